@@ -1,0 +1,21 @@
+#pragma once
+// Repose angle of a heap, as the thesis reads it, and other readings beside it.
+#include "sim/io/snapshot.h"
+
+namespace scree {
+
+/// Readings of the repose angle of one heap (degrees).
+struct ReposeAngle {
+  double angle = 0;           ///< thesis: atan(H / R), mean of four directions; R out to where grains no longer overlap
+  double half_coverage = 0;   ///< atan(H / R_h), R_h where half of the ring's plan area is covered
+  double slope_fit = 0;       ///< slope of the straight flank fitted to the heap's surface profile
+  double height = 0;          ///< H, top of the cone, m
+  double radius = 0;          ///< mean R, m
+  double radii[4] = {0, 0, 0, 0};  ///< +x, +y, -x, -y
+  int runaways = 0;           ///< grains beyond R, left out
+};
+
+/// Heap on a floor at z = `floor`; the axis is found from the heap (mass-weighted median of x and y).
+ReposeAngle measure_repose(const std::vector<Grain>& heap, double floor = 0.0);
+
+}  // namespace scree

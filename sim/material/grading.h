@@ -1,0 +1,52 @@
+#pragma once
+// Gradings (particle size distributions) and spheres that honour them.
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace scree {
+
+/// A passing curve: share of the mass finer than a diameter, linear in log10(diameter) between points.
+class Grading {
+ public:
+  struct Point {
+    double diameter;  ///< m
+    double passing;   ///< share of mass, 0 to 1
+  };
+
+  /// Points with strictly rising diameters and rising passing, from 0 to 1; throws std::invalid_argument otherwise.
+  Grading(std::string name, std::vector<Point> points);
+
+  /// Passing share at a diameter (m).
+  double passing(double diameter) const;
+  /// Diameter (m) at a passing share in [0, 1]; the D_x of soil mechanics is diameter(x / 100).
+  double diameter(double passing) const;
+  double cu() const;  ///< Coefficient of uniformity D60 / D10.
+  double cc() const;  ///< Coefficient of curvature D30^2 / (D10 D60).
+  double min_diameter() const { return points_.front().diameter; }
+  double max_diameter() const { return points_.back().diameter; }
+  /// Mean over mass of log10(diameter in m).
+  double mean_log_diameter() const;
+  const std::string& name() const { return name_; }
+  const std::vector<Point>& points() const { return points_; }
+
+  /// The same curve without what lies outside [low, high] (m), rescaled to 0..1.
+  Grading scalped(double low, double high) const;
+
+ private:
+  std::string name_;
+  std::vector<Point> points_;
+};
+
+/// Reads a grading file: CSV, `#` comment lines (source, how it was rebuilt), header `diameter_mm,passing_pct`.
+/// Throws std::runtime_error with one line `file:line: what is wrong, what is allowed`.
+Grading read_grading(const std::filesystem::path& file);
+
+/// Diameters (m), largest first, of spheres that together weigh `mass` (kg) within 0.5 % and whose passing curve is within
+/// 2 points of the grading at every point of it, for any seed, as long as the mass allows it (a mass of less than some
+/// ten of the largest spheres cannot). `seed` and `dump` name the random stream.
+std::vector<double> generate_diameters(const Grading& grading, double mass, double density, std::uint64_t seed,
+                                       std::uint64_t dump);
+
+}  // namespace scree
