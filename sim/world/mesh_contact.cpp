@@ -1,0 +1,159 @@
+#include "sim/world/mesh_contact.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace scree {
+namespace {
+
+enum class Feature { face = 0, edge = 1, vertex = 2 };
+
+struct ClosestPoint {
+  Vec3 point;
+  Feature feature;
+};
+
+// Closest point of a triangle to p, with the feature it lies on. Ericson, Real-Time Collision Detection (2005), 5.1.5.
+ClosestPoint closest_point(const Vec3& p, const Facet& f) {
+  const Vec3 ab = f.b - f.a, ac = f.c - f.a, ap = p - f.a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return {f.a, Feature::vertex};
+  const Vec3 bp = p - f.b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return {f.b, Feature::vertex};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {f.a + ab * (d1 / (d1 - d3)), Feature::edge};
+  const Vec3 cp = p - f.c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return {f.c, Feature::vertex};
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {f.a + ac * (d2 / (d2 - d6)), Feature::edge};
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+    return {f.b + (f.c - f.b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), Feature::edge};
+  const double inverse = 1.0 / (va + vb + vc);
+  return {f.a + ab * (vb * inverse) + ac * (vc * inverse), Feature::face};
+}
+
+struct Touch {
+  Vec3 foot;    // on the surface, mesh frame
+  Vec3 normal;  // towards the sphere, mesh frame
+  double overlap;
+  Feature feature;
+  int facet;
+};
+
+constexpr double kSameContact = 0.5;       // cosine of the largest turn over which a contact goes on
+constexpr double kSameSide = 0.7;          // cosine within which a remembered normal tells the side of a face
+constexpr double kPlaneTolerance = 1e-7;   // of the radius
+
+// All features of one body that the sphere overlaps.
+void collect(const MeshBody& body, std::span<const FacetRef> facets, const Vec3& centre, double radius,
+             std::span<const Vec3> remembered, std::vector<Touch>& touches) {
+  for (const FacetRef& ref : facets) {
+    const Facet& f = body.facets()[ref.facet];
+    const double height = (centre - f.a).dot(f.normal);
+    if (height >= radius) continue;
+    double side = 0;  // +1: the contact began in front of the face, -1: behind, 0: none remembered
+    for (const Vec3& n : remembered)
+      if (const double c = n.dot(f.normal); std::abs(c) > kSameSide) side = c > 0 ? 1.0 : -1.0;
+    if (height <= -radius && side == 0) continue;
+    const ClosestPoint closest = closest_point(centre, f);
+    if (closest.feature == Feature::face) {
+      if (body.mesh().closed) {
+        if (height < 0 && side <= 0) continue;
+        side = 1.0;
+      } else if (side == 0) {
+        side = height >= 0 ? 1.0 : -1.0;
+      }
+      const double overlap = radius - side * height;
+      if (overlap > 0) touches.push_back({closest.point, side * f.normal, overlap, closest.feature, ref.facet});
+      continue;
+    }
+    if (body.mesh().closed && height < 0) continue;  // the neighbour in front of which the centre lies has this feature too
+    const Vec3 away = centre - closest.point;
+    const double distance = away.norm();
+    if (distance >= radius || distance == 0) continue;
+    touches.push_back({closest.point, away / distance, radius - distance, closest.feature, ref.facet});
+  }
+}
+
+bool hidden(const Touch& touch, const Touch& by, double radius) {
+  const double ahead = (touch.foot - by.foot).dot(by.normal);
+  if (touch.feature == Feature::face)  // a second face in the same plane, overlapping or on the seam
+    return std::abs(ahead) <= kPlaneTolerance * radius && touch.normal.dot(by.normal) > 1 - 1e-9;
+  return ahead <= kPlaneTolerance * radius;
+}
+
+}  // namespace
+
+int update_mesh_contacts(const std::vector<std::unique_ptr<MeshBody>>& bodies, std::span<const FacetRef> facets,
+                         const Vec3& centre, double radius, std::span<MeshContact> slots) {
+  thread_local std::vector<Touch> touches, accepted;
+  std::array<bool, kMeshContactSlots> goes_on{};
+  struct Fresh {
+    MeshContact contact;
+  };
+  std::array<Fresh, kMeshContactSlots> fresh;
+  int fresh_count = 0, without_slot = 0;
+
+  for (std::size_t first = 0; first < facets.size();) {
+    const int b = facets[first].body;
+    std::size_t last = first;
+    while (last < facets.size() && facets[last].body == b) ++last;
+    const MeshBody& body = *bodies[b];
+    const Pose& pose = body.state().pose;
+    std::array<Vec3, kMeshContactSlots> remembered;
+    std::size_t remembered_count = 0;
+    for (const MeshContact& slot : slots)
+      if (slot.body == b) remembered[remembered_count++] = pose.rotation.conjugate() * slot.normal;
+
+    touches.clear();
+    accepted.clear();
+    collect(body, facets.subspan(first, last - first), pose.to_local(centre), radius,
+            std::span(remembered.data(), remembered_count), touches);
+    std::sort(touches.begin(), touches.end(), [](const Touch& a, const Touch& c) {
+      if (a.feature != c.feature) return a.feature < c.feature;
+      if (a.overlap != c.overlap) return a.overlap > c.overlap;
+      return a.facet < c.facet;
+    });
+    for (const Touch& touch : touches)
+      if (std::none_of(accepted.begin(), accepted.end(), [&](const Touch& by) { return hidden(touch, by, radius); }))
+        accepted.push_back(touch);
+
+    for (const Touch& touch : accepted) {
+      const Vec3 normal = pose.rotation * touch.normal;
+      int best = -1;
+      double best_cosine = kSameContact;
+      for (int k = 0; k < static_cast<int>(slots.size()); ++k) {
+        if (slots[k].body != b || goes_on[k]) continue;
+        if (const double c = slots[k].normal.dot(normal); c > best_cosine) best = k, best_cosine = c;
+      }
+      if (best >= 0) {
+        goes_on[best] = true;
+        slots[best].normal = normal;
+        slots[best].overlap = touch.overlap;
+      } else if (fresh_count < kMeshContactSlots) {
+        fresh[fresh_count++].contact = {b, normal, touch.overlap, {}};
+      } else {
+        ++without_slot;
+      }
+    }
+    first = last;
+  }
+
+  for (int k = 0; k < static_cast<int>(slots.size()); ++k)
+    if (!goes_on[k]) slots[k].body = -1;
+  int k = 0;
+  for (int m = 0; m < fresh_count; ++m) {
+    while (k < static_cast<int>(slots.size()) && slots[k].body >= 0) ++k;
+    if (k == static_cast<int>(slots.size()))
+      ++without_slot;
+    else
+      slots[k] = fresh[m].contact;
+  }
+  return without_slot;
+}
+
+}  // namespace scree

@@ -1,0 +1,40 @@
+#pragma once
+// Where a sphere touches a mesh: one contact a surface, whatever the triangulation.
+#include <span>
+#include <vector>
+
+#include "sim/contact/rrlinear.h"
+#include "sim/world/mesh_body.h"
+
+namespace scree {
+
+/// A contact of a sphere with a mesh body, with its memory. World axes.
+struct MeshContact {
+  int body = -1;          ///< index of the mesh body; -1: slot is free
+  Vec3 normal;            ///< from the surface to the sphere, unit
+  double overlap = 0;     ///< m; above the radius when the centre has been pressed through the surface
+  ContactHistory history;
+};
+
+/// Largest number of contacts one sphere may have with all meshes together.
+inline constexpr int kMeshContactSlots = 8;
+
+/// A facet that a sphere may touch.
+struct FacetRef {
+  int body;
+  int facet;
+};
+
+/// Finds the contacts of a sphere with the facets listed (sorted by body) and updates its slots: a contact that goes on keeps its memory,
+/// one that has ended is freed.
+///
+/// Priority is face, edge, vertex. An accepted contact with foot p and normal n hides every edge or vertex whose closest point lies
+/// in or behind the plane (p, n): so seams of coplanar triangles, and the neighbours across a convex edge, are felt once,
+/// with conforming and with non-conforming triangulations. A contact goes on if its normal turned by less than 60 degrees.
+/// Closed meshes push from the outside only; a centre that was pressed through a face from the outside is still pushed
+/// back out, one that came from the inside is left alone. Sheets push on the side where the contact began.
+/// Returns the number of contacts that found no slot.
+int update_mesh_contacts(const std::vector<std::unique_ptr<MeshBody>>& bodies, std::span<const FacetRef> facets,
+                         const Vec3& centre, double radius, std::span<MeshContact> slots);
+
+}  // namespace scree

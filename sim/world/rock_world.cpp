@@ -1,0 +1,156 @@
+#include "sim/world/rock_world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace scree {
+namespace {
+
+constexpr double kTooFast = 500.0;  // m/s; no fall of this field is a tenth of it
+
+// Collision groups: spheres of the explicit engine meet nothing of Bullet's but queries and bodies that others add.
+constexpr int kRockGroup = 1 << 10, kToolGroup = 1 << 11;
+
+}  // namespace
+
+RockWorld::RockWorld(const WorldSettings& settings)
+    : btDiscreteDynamicsWorld(&dispatcher, &broadphase, &solver, &configuration), settings_(settings) {
+  setGravity(to_bullet(settings_.gravity));
+}
+
+RockWorld::~RockWorld() {
+  for (const auto& body : bodies_)
+    if (body && body->isInWorld()) removeRigidBody(body.get());
+  for (const auto& mesh : meshes_)
+    if (mesh) removeRigidBody(&mesh->body());
+}
+
+void RockWorld::add_spheres(const std::vector<NewSphere>& spheres) {
+  for (const NewSphere& s : spheres) {
+    const double radius = 0.5 * s.diameter;
+    const double mass = settings_.material.density * M_PI / 6.0 * std::pow(s.diameter, 3);
+    const auto id = static_cast<std::int64_t>(bodies_.size());
+    spheres_.place.push_back({s.position.x(), s.position.y(), s.position.z(), radius});
+    spheres_.velocity.push_back({s.velocity.x(), s.velocity.y(), s.velocity.z(), mass});
+    spheres_.spin.push_back({s.spin.x(), s.spin.y(), s.spin.z(), 0.4 * mass * radius * radius});
+    spheres_.force.emplace_back();
+    spheres_.torque.emplace_back();
+    spheres_.id.push_back(id);
+    spheres_.dump.push_back(s.dump);
+    spheres_.lost.push_back(0);
+    fixed_.push_back(s.fixed ? 1 : 0);
+
+    shapes_.push_back(std::make_unique<btSphereShape>(radius));
+    const bool dynamic = bullet_moves_spheres() && !s.fixed;
+    btVector3 inertia(0, 0, 0);
+    if (dynamic) shapes_.back()->calculateLocalInertia(mass, inertia);
+    btRigidBody::btRigidBodyConstructionInfo info(dynamic ? mass : 0.0, nullptr, shapes_.back().get(), inertia);
+    info.m_startWorldTransform.setIdentity();
+    info.m_startWorldTransform.setOrigin(to_bullet(s.position));
+    auto body = std::make_unique<btRigidBody>(info);
+    body->setUserIndex(static_cast<int>(id));
+    if (dynamic) {
+      body->setLinearVelocity(to_bullet(s.velocity));
+      body->setAngularVelocity(to_bullet(s.spin));
+    } else if (!s.fixed) {
+      body->setCollisionFlags(body->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+    }
+    const int mask = bullet_moves_spheres() ? btBroadphaseProxy::AllFilter : btBroadphaseProxy::DefaultFilter;
+    addRigidBody(body.get(), kRockGroup, mask);
+    bodies_.push_back(std::move(body));
+  }
+  spheres_.movable = static_cast<int>(std::count(fixed_.begin(), fixed_.end(), 0));
+  scene_changed();
+}
+
+int RockWorld::add_mesh(TriangleMesh mesh, const Surface& surface, Motion motion) {
+  meshes_.push_back(std::make_unique<MeshBody>(std::move(mesh), surface, std::move(motion)));
+  meshes_.back()->move_to(time_);
+  meshes_.back()->mark();
+  meshes_.back()->write_back();
+  const int mask = bullet_moves_spheres() ? btBroadphaseProxy::AllFilter : btBroadphaseProxy::DefaultFilter;
+  addRigidBody(&meshes_.back()->body(), kToolGroup, mask);
+  scene_changed();
+  return static_cast<int>(meshes_.size()) - 1;
+}
+
+void RockWorld::remove_mesh(int index) {
+  if (!meshes_[index]) return;
+  removeRigidBody(&meshes_[index]->body());
+  meshes_[index].reset();
+  scene_changed();
+}
+
+Snapshot RockWorld::snapshot() const {
+  Snapshot shot;
+  shot.time = time_;
+  for (int i = 0; i < spheres_.size(); ++i) {
+    if (fixed_[i] || spheres_.lost[i]) continue;
+    shot.grains.push_back({spheres_.id[i], spheres_.place[i].vec(), spheres_.velocity[i].vec(),
+                           2.0 * spheres_.place[i].w, spheres_.velocity[i].w, spheres_.dump[i]});
+  }
+  std::sort(shot.grains.begin(), shot.grains.end(), [](const Grain& a, const Grain& b) { return a.id < b.id; });
+  return shot;
+}
+
+std::vector<Grain> RockWorld::fixed_balls() const {
+  std::vector<Grain> balls;
+  for (int i = 0; i < spheres_.size(); ++i)
+    if (fixed_[i])
+      balls.push_back({spheres_.id[i], spheres_.place[i].vec(), Vec3::Zero(), 2.0 * spheres_.place[i].w,
+                       spheres_.velocity[i].w, 0});
+  std::sort(balls.begin(), balls.end(), [](const Grain& a, const Grain& b) { return a.id < b.id; });
+  return balls;
+}
+
+double RockWorld::moving_mass_share(double speed) const {
+  double moving = 0, all = 0;
+  for (int i = 0; i < spheres_.size(); ++i) {
+    if (fixed_[i] || spheres_.lost[i]) continue;
+    const double mass = spheres_.velocity[i].w;
+    all += mass;
+    if (spheres_.velocity[i].vec().squaredNorm() > speed * speed) moving += mass;
+  }
+  return all > 0 ? moving / all : 0.0;
+}
+
+Energy RockWorld::energy() const {
+  Energy e;
+  for (int i = 0; i < spheres_.size(); ++i) {
+    if (fixed_[i] || spheres_.lost[i]) continue;
+    const double mass = spheres_.velocity[i].w;
+    e.kinetic += 0.5 * mass * spheres_.velocity[i].vec().squaredNorm() +
+                 0.5 * spheres_.spin[i].w * spheres_.spin[i].vec().squaredNorm();
+    e.potential -= mass * settings_.gravity.dot(spheres_.place[i].vec());
+  }
+  return e;
+}
+
+btRigidBody* RockWorld::sphere_body(std::int64_t id) { return bodies_[static_cast<std::size_t>(id)].get(); }
+
+void RockWorld::check_spheres() {
+  for (int i = 0; i < spheres_.size(); ++i) {
+    if (fixed_[i] || spheres_.lost[i]) continue;
+    const Vec3 x = spheres_.place[i].vec(), v = spheres_.velocity[i].vec();
+    const bool finite = x.allFinite() && v.allFinite() && spheres_.spin[i].vec().allFinite();
+    if (!finite || v.squaredNorm() > kTooFast * kTooFast)
+      throw BlowUp(fmt::format("the run blew up at t = {:.4f} s (a sphere of {:.3f} m {}): lower numerics.time_step_safety",
+                               time_, 2.0 * spheres_.place[i].w,
+                               finite ? fmt::format("moves at {:.0f} m/s", v.norm()) : "has no finite position"));
+    if ((x.array() < settings_.domain_low.array()).any() || (x.array() > settings_.domain_high.array()).any()) {
+      spheres_.lost[i] = 1;
+      ++statistics_.lost_particles;
+      statistics_.lost_mass += spheres_.velocity[i].w;
+      auto& body = bodies_[static_cast<std::size_t>(spheres_.id[i])];
+      removeRigidBody(body.get());
+      body.reset();
+      spheres_.velocity[i].set(Vec3::Zero());
+      spheres_.spin[i].set(Vec3::Zero());
+      sphere_lost(i);
+    }
+  }
+}
+
+}  // namespace scree

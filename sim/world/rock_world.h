@@ -1,0 +1,121 @@
+#pragma once
+// A Bullet dynamics world of rock: one scene, two engines behind this interface.
+//
+// Spheres are Bullet rigid bodies with sphere shapes and meshes are kinematic Bullet bodies in both engines. `RrlinearWorld` steps the
+// contact law explicitly on its own arrays and writes the bodies back at the end of advance_to(), so that ray tests, debug
+// drawing and serialisation of Bullet see the scene; `ImpulseWorld` leaves the stepping to Bullet's solver.
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "sim/io/snapshot.h"
+#include "sim/material/material.h"
+#include "sim/world/mesh_body.h"
+#include "sim/world/spheres.h"
+
+namespace scree {
+
+/// The run went out of bounds (not finite, or faster than anything can fall); the message says when and what to change.
+struct BlowUp : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct WorldSettings {
+  Material material;
+  Vec3 gravity{0, 0, -9.81};             ///< m/s2
+  Vec3 domain_low = Vec3::Constant(-1e6), domain_high = Vec3::Constant(1e6);  ///< m; a sphere outside is lost
+  double time_step_safety = 0.8;         ///< share of the stable step (rrlinear)
+  double fixed_time_step = 0;            ///< s; above 0 it is used instead (rrlinear; for tests)
+  int threads = 1;                       ///< worker threads of this world (rrlinear)
+  double impulse_time_step = 1e-3;       ///< s (impulse)
+  int impulse_iterations = 20;           ///< solver iterations (impulse)
+};
+
+struct WorldStatistics {
+  std::int64_t steps = 0;
+  double particle_steps = 0;             ///< sum over steps of spheres moved
+  double time_step_min = 0, time_step_max = 0;  ///< s
+  double largest_overlap_ratio = 0;      ///< overlap over the smaller radius
+  std::int64_t lost_particles = 0;
+  double lost_mass = 0;                  ///< kg
+  std::int64_t list_repairs = 0;         ///< times the pair list was repaired
+};
+
+/// Energies of the scene (J).
+struct Energy {
+  double kinetic = 0, potential = 0, elastic = 0;
+  double total() const { return kinetic + potential + elastic; }
+};
+
+/// Parts a Bullet world needs before it is made.
+struct BulletParts {
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher{&configuration};
+  btDbvtBroadphase broadphase;
+  btSequentialImpulseConstraintSolver solver;
+};
+
+class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
+ public:
+  explicit RockWorld(const WorldSettings& settings);
+  ~RockWorld() override;
+  RockWorld(const RockWorld&) = delete;
+  RockWorld& operator=(const RockWorld&) = delete;
+
+  /// Adds spheres; ids are given in order, from the number of spheres added so far.
+  void add_spheres(const std::vector<NewSphere>& spheres);
+  /// Adds a mesh; returns its index, which stays valid.
+  int add_mesh(TriangleMesh mesh, const Surface& surface, Motion motion);
+  MeshBody& mesh(int index) { return *meshes_[index]; }
+  /// Takes a mesh out of the scene; its index is not used again.
+  void remove_mesh(int index);
+
+  /// Steps to a time (s). Throws BlowUp.
+  virtual void advance_to(double time) = 0;
+
+  double time() const { return time_; }
+  const WorldSettings& settings() const { return settings_; }
+  const WorldStatistics& statistics() const { return statistics_; }
+  const Spheres& spheres() const { return spheres_; }
+  /// Movable spheres that are still in the model, by id.
+  Snapshot snapshot() const;
+  /// Fixed balls, by id.
+  std::vector<Grain> fixed_balls() const;
+  /// Share of the mass in the model that moves faster than `speed` (m/s).
+  double moving_mass_share(double speed) const;
+  virtual Energy energy() const;
+  /// The Bullet body of a sphere, by id; null when lost.
+  btRigidBody* sphere_body(std::int64_t id);
+
+ protected:
+  /// Called when spheres were added (they are the last ones) or meshes changed.
+  virtual void scene_changed() = 0;
+  /// True if the engine moves spheres through Bullet's solver.
+  virtual bool bullet_moves_spheres() const = 0;
+  /// Counts and takes out spheres beyond the domain; throws BlowUp for those that are not finite or too fast.
+  void check_spheres();
+  virtual void sphere_lost(int index) = 0;
+
+  WorldSettings settings_;
+  WorldStatistics statistics_;
+  double time_ = 0;
+  Spheres spheres_;
+  std::vector<std::uint8_t> fixed_;                 // by index
+  std::vector<std::unique_ptr<MeshBody>> meshes_;   // null: removed
+  std::vector<std::unique_ptr<btRigidBody>> bodies_;       // by id
+  std::vector<std::unique_ptr<btSphereShape>> shapes_;     // by id
+};
+
+/// Makes the world of an engine.
+std::unique_ptr<RockWorld> make_rrlinear_world(const WorldSettings& settings);
+std::unique_ptr<RockWorld> make_impulse_world(const WorldSettings& settings);
+
+}  // namespace scree

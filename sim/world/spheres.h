@@ -1,0 +1,47 @@
+#pragma once
+// Hot state of all spheres, as a structure of arrays of aligned quadruples.
+#include <cstdint>
+#include <vector>
+
+#include "sim/material/vector.h"
+
+namespace scree {
+
+/// Three components and one companion that is always read with them.
+struct alignas(32) Quad {
+  double x = 0, y = 0, z = 0, w = 0;
+  Vec3 vec() const { return {x, y, z}; }
+  void set(const Vec3& v) { x = v.x(), y = v.y(), z = v.z(); }
+  void add(const Vec3& v) { x += v.x(), y += v.y(), z += v.z(); }
+};
+
+/// A sphere to be put into the world.
+struct NewSphere {
+  Vec3 position;                  ///< m
+  double diameter = 0;            ///< m
+  int dump = 0;                   ///< 0 for fixed balls
+  bool fixed = false;
+  Vec3 velocity = Vec3::Zero();   ///< m/s
+  Vec3 spin = Vec3::Zero();       ///< rad/s
+};
+
+/// Movable spheres stand first (index below `movable`), fixed balls behind them.
+struct Spheres {
+  std::vector<Quad> place;     ///< position m; w: radius m
+  std::vector<Quad> velocity;  ///< m/s; w: mass kg
+  std::vector<Quad> spin;      ///< rad/s; w: moment of inertia kg m2
+  std::vector<Quad> force;     ///< N; w: number of contacts
+  std::vector<Quad> torque;    ///< N m
+  std::vector<std::int64_t> id;
+  std::vector<std::int32_t> dump;
+  std::vector<std::uint8_t> lost;  ///< has left the model; takes no part any more
+  int movable = 0;
+
+  int size() const { return static_cast<int>(place.size()); }
+};
+
+/// Orders movable spheres along a Morton curve (lost ones last), fixed balls likewise behind them. Returns `order`
+/// with new index k holding the sphere that had index order[k].
+std::vector<int> sort_spheres(Spheres& spheres, const std::vector<std::uint8_t>& fixed);
+
+}  // namespace scree
