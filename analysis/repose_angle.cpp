@@ -1,0 +1,226 @@
+// Readings of the repose angle.
+//
+// The thesis reads atan(H / R): H the top of the cone, R the distance from the centre to where particles no
+// longer overlap, in four directions, runaways left out. Here: in a strip one largest diameter wide from the
+// axis outwards, the grains' circles in plan that touch one another, beginning at the axis, are the heap; R
+// is the farthest point of them. Two grains on the floor that touch always overlap in plan, so a closed row
+// of grains belongs to the heap and a single grain beyond a gap does not.
+//
+// The other readings come from a height map of the heap seen from above.
+#include "analysis/repose_angle.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+namespace scree {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+double degrees(double radians) {
+  return radians * 180 / std::numbers::pi;
+}
+
+double weighted_median(const std::vector<Grain>& heap, int axis) {
+  std::vector<const Grain*> order;
+  double total = 0;
+  for (const Grain& grain : heap) {
+    order.push_back(&grain);
+    total += grain.mass;
+  }
+  std::sort(order.begin(), order.end(),
+            [axis](const Grain* a, const Grain* b) { return a->position[axis] < b->position[axis]; });
+  double sum = 0;
+  for (const Grain* grain : order) {
+    sum += grain->mass;
+    if (sum >= 0.5 * total) return grain->position[axis];
+  }
+  return order.back()->position[axis];
+}
+
+/// A grain in plan, the axis of the heap at the origin.
+struct Circle {
+  double x, y, radius;
+};
+
+/// Farthest point from the axis along direction (ux, uy) that touching circles of the strip reach.
+double reach(const std::vector<Circle>& circles, double ux, double uy, double width) {
+  struct Entry {
+    double along, across, radius;
+    bool connected = false;
+  };
+  std::vector<Entry> strip;
+  double largest = 0;
+  for (const Circle& c : circles) {
+    const double along = c.x * ux + c.y * uy, across = c.x * uy - c.y * ux;
+    if (std::abs(across) > 0.5 * width || along + c.radius < 0) continue;
+    strip.push_back({along, across, c.radius});
+    largest = std::max(largest, c.radius);
+  }
+  if (strip.empty()) return 0;
+  std::sort(strip.begin(), strip.end(), [](const Entry& a, const Entry& b) { return a.along < b.along; });
+  const auto first = std::min_element(strip.begin(), strip.end(), [](const Entry& a, const Entry& b) {
+    return std::hypot(a.along, a.across) - a.radius < std::hypot(b.along, b.across) - b.radius;
+  });
+  std::vector<std::size_t> open{static_cast<std::size_t>(first - strip.begin())};
+  first->connected = true;
+  double farthest = 0;
+  while (!open.empty()) {
+    const Entry here = strip[open.back()];
+    open.pop_back();
+    farthest = std::max(farthest, here.along + here.radius);
+    const double range = here.radius + largest;
+    auto other = std::lower_bound(strip.begin(), strip.end(), here.along - range,
+                                  [](const Entry& entry, double along) { return entry.along < along; });
+    for (; other != strip.end() && other->along <= here.along + range; ++other) {
+      if (other->connected) continue;
+      if (std::hypot(other->along - here.along, other->across - here.across) > here.radius + other->radius)
+        continue;
+      other->connected = true;
+      open.push_back(static_cast<std::size_t>(other - strip.begin()));
+    }
+  }
+  return farthest;
+}
+
+/// Radius of the heap at an angle, linear between the four directions.
+double radius_at(const double (&radii)[4], double x, double y) {
+  double quarter = std::atan2(y, x) / (0.5 * std::numbers::pi);
+  if (quarter < 0) quarter += 4;
+  const int k = std::min(static_cast<int>(quarter), 3);
+  return radii[k] + (quarter - k) * (radii[(k + 1) % 4] - radii[k]);
+}
+
+/// Highest point of the cone over the floor. A grain perched on the heap, more than its own radius higher
+/// than any other, is not the cone's top.
+double top_of(const std::vector<const Grain*>& grains, double floor) {
+  std::vector<std::array<double, 2>> tops;  // height, radius
+  for (const Grain* grain : grains)
+    tops.push_back({grain->position.z() + 0.5 * grain->diameter - floor, 0.5 * grain->diameter});
+  std::sort(tops.rbegin(), tops.rend());
+  for (std::size_t i = 0; i + 1 < tops.size(); ++i)
+    if (tops[i][0] - tops[i + 1][0] <= tops[i][1]) return tops[i][0];
+  return tops.empty() ? nan : tops.back()[0];
+}
+
+/// Rings about the axis: mean height of what is seen from above, and covered share of the plan area.
+struct Rings {
+  double width = 0;
+  std::vector<double> height, covered;
+  double centre(std::size_t k) const { return (static_cast<double>(k) + 0.5) * width; }
+};
+
+Rings rings_of(const std::vector<Grain>& heap, double x0, double y0, double floor, double extent) {
+  constexpr int half = 400;  // cells from the axis to `extent`
+  constexpr int rings = 80;
+  constexpr int side = 2 * half;
+  const double cell = extent / half;
+  std::vector<double> top(static_cast<std::size_t>(side) * side, -1.0);  // m over the floor; -1: floor seen
+  const auto centre = [cell](int i) { return (i - half + 0.5) * cell; };
+  const auto first_cell = [cell](double x) { return static_cast<int>(std::ceil(x / cell + half - 0.5)); };
+  for (const Grain& grain : heap) {
+    const double x = grain.position.x() - x0, y = grain.position.y() - y0, r = 0.5 * grain.diameter;
+    if (!(std::abs(x) < extent + r && std::abs(y) < extent + r)) continue;
+    const int j_end = std::min(side, first_cell(y + r)), i_end = std::min(side, first_cell(x + r));
+    for (int j = std::max(0, first_cell(y - r)); j < j_end; ++j)
+      for (int i = std::max(0, first_cell(x - r)); i < i_end; ++i) {
+        const double dx = centre(i) - x, dy = centre(j) - y, rest = r * r - dx * dx - dy * dy;
+        if (rest < 0) continue;
+        double& here = top[static_cast<std::size_t>(j) * side + i];
+        here = std::max({here, 0.0, grain.position.z() - floor + std::sqrt(rest)});
+      }
+  }
+  Rings result;
+  result.width = extent / rings;
+  result.height.assign(rings, 0);
+  result.covered.assign(rings, 0);
+  std::vector<int> cells(rings, 0);
+  for (int j = 0; j < side; ++j)
+    for (int i = 0; i < side; ++i) {
+      const auto k = static_cast<int>(std::hypot(centre(i), centre(j)) / result.width);
+      if (k >= rings) continue;
+      const double here = top[static_cast<std::size_t>(j) * side + i];
+      ++cells[k];
+      if (here < 0) continue;
+      result.height[k] += here;
+      result.covered[k] += 1;
+    }
+  for (int k = 0; k < rings; ++k) {
+    result.height[k] /= std::max(cells[k], 1);
+    result.covered[k] /= std::max(cells[k], 1);
+  }
+  return result;
+}
+
+/// First radius, from the axis outwards, where `values` (one a ring) falls below `level`; linear between ring
+/// centres.
+double falls_below(const Rings& rings, const std::vector<double>& values, double level) {
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (values[k] >= level) continue;
+    if (k == 0) return 0;
+    const double t = (values[k - 1] - level) / (values[k - 1] - values[k]);
+    return rings.centre(k - 1) + t * rings.width;
+  }
+  return nan;
+}
+
+/// Slope (degrees) of the least-squares line through the rings between 80 % and 20 % of `height`.
+double fitted_slope(const Rings& rings, double height) {
+  const double inner = falls_below(rings, rings.height, 0.8 * height);
+  const double outer = falls_below(rings, rings.height, 0.2 * height);
+  double n = 0, sx = 0, sz = 0, sxx = 0, sxz = 0;
+  for (std::size_t k = 0; k < rings.height.size(); ++k) {
+    const double x = rings.centre(k), z = rings.height[k];
+    if (!(x >= inner && x <= outer)) continue;
+    n += 1;
+    sx += x;
+    sz += z;
+    sxx += x * x;
+    sxz += x * z;
+  }
+  if (n < 2) return nan;
+  return degrees(std::atan(-(n * sxz - sx * sz) / (n * sxx - sx * sx)));
+}
+
+}  // namespace
+
+ReposeAngle measure_repose(const std::vector<Grain>& heap, double floor) {
+  ReposeAngle result;
+  result.angle = result.half_coverage = result.slope_fit = result.height = result.radius = nan;
+  if (heap.empty()) return result;
+  const double x0 = weighted_median(heap, 0), y0 = weighted_median(heap, 1);
+  std::vector<Circle> circles;
+  double largest = 0;
+  for (const Grain& grain : heap) {
+    circles.push_back({grain.position.x() - x0, grain.position.y() - y0, 0.5 * grain.diameter});
+    largest = std::max(largest, grain.diameter);
+  }
+  constexpr std::array<std::array<double, 2>, 4> directions{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
+  for (int k = 0; k < 4; ++k) result.radii[k] = reach(circles, directions[k][0], directions[k][1], largest);
+  result.radius = std::accumulate(std::begin(result.radii), std::end(result.radii), 0.0) / 4;
+
+  std::vector<const Grain*> inside;
+  for (std::size_t i = 0; i < heap.size(); ++i) {
+    const bool runaway =
+        std::hypot(circles[i].x, circles[i].y) > radius_at(result.radii, circles[i].x, circles[i].y);
+    runaway ? void(++result.runaways) : inside.push_back(&heap[i]);
+  }
+  result.height = top_of(inside, floor);
+  double sum = 0;
+  for (const double radius : result.radii) sum += std::atan2(result.height, radius);
+  result.angle = degrees(sum / 4);
+
+  const double extent = 1.25 * *std::max_element(std::begin(result.radii), std::end(result.radii));
+  if (!(extent > 0)) return result;
+  const Rings rings = rings_of(heap, x0, y0, floor, extent);
+  result.half_coverage = degrees(std::atan2(result.height, falls_below(rings, rings.covered, 0.5)));
+  result.slope_fit = fitted_slope(rings, result.height);
+  return result;
+}
+
+}  // namespace scree

@@ -1,0 +1,106 @@
+#include "analysis/segregation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+namespace scree {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+std::optional<PassingCurve> curve_of(const std::vector<const Grain*>& grains) {
+  if (grains.empty()) return std::nullopt;
+  std::vector<double> diameters, masses;
+  diameters.reserve(grains.size());
+  masses.reserve(grains.size());
+  for (const Grain* grain : grains) {
+    diameters.push_back(grain->diameter);
+    masses.push_back(grain->mass);
+  }
+  return PassingCurve(std::move(diameters), masses);
+}
+
+/// Preferred numbers R10 (ISO 3) from just below the smallest to just above the largest diameter; 1 m is
+/// among them.
+std::vector<double> sieves_for(double smallest, double largest) {
+  constexpr std::array<double, 10> r10{1, 1.25, 1.6, 2, 2.5, 3.15, 4, 5, 6.3, 8};
+  std::vector<double> all;
+  for (int decade = -7; decade <= 3; ++decade)
+    for (const double number : r10) all.push_back(number * std::pow(10.0, decade));
+  auto first = std::upper_bound(all.begin(), all.end(), smallest);
+  auto last = std::lower_bound(all.begin(), all.end(), largest);
+  if (first != all.begin()) --first;
+  if (last != all.end()) ++last;
+  return {first, last};
+}
+
+}  // namespace
+
+SectionTable analyse_sections(const std::vector<Grain>& pile, const std::vector<Grain>& original,
+                              double crest_height, int n) {
+  if (n < 1) throw std::invalid_argument(fmt::format("{} sections: at least 1 is needed", n));
+  if (!(crest_height > 0))
+    throw std::invalid_argument(fmt::format("crest height {} m must be above 0", crest_height));
+  if (original.empty()) throw std::invalid_argument("the original material has no grain");
+
+  std::vector<const Grain*> all;
+  all.reserve(original.size());
+  for (const Grain& grain : original) all.push_back(&grain);
+  const PassingCurve whole = *curve_of(all);
+
+  SectionTable table;
+  table.d0_log = whole.mean_log_diameter();
+  table.dcq_log = whole.coarsest_quartile_log_diameter();
+  const auto [smallest, largest] =
+      std::minmax_element(original.begin(), original.end(),
+                          [](const Grain& a, const Grain& b) { return a.diameter < b.diameter; });
+  table.sieves = sieves_for(smallest->diameter, largest->diameter);
+  for (const double sieve : table.sieves) table.original_passing.push_back(whole.passing(sieve));
+
+  std::vector<std::vector<const Grain*>> slices(n);
+  for (const Grain& grain : pile) {
+    const double below_crest = (crest_height - grain.position.z()) / crest_height;
+    if (!(below_crest >= 0)) {  // above the crest, or no number
+      table.mass_outside += grain.mass;
+      continue;
+    }
+    // A small grain between the balls of the floor can lie below it: it belongs to the lowest section.
+    slices[static_cast<int>(std::min(below_crest * n, n - 1.0))].push_back(&grain);
+  }
+
+  const double spread = table.dcq_log - table.d0_log;
+  for (int k = 0; k < n; ++k) {
+    Section section;
+    section.name = fmt::format("S{}", k + 1);
+    section.x_over_l = (2.0 * k + 1) / (2.0 * n);
+    section.grains = static_cast<int>(slices[k].size());
+    const auto curve = curve_of(slices[k]);
+    const auto diameter = [&](double p) { return curve ? curve->diameter(p) : nan; };
+    section.mass = curve ? curve->mass() : 0;
+    // A material of one size has no coarser quartile to segregate: chi is not defined.
+    section.chi = curve && spread > 0 ? (curve->mean_log_diameter() - table.d0_log) / spread : nan;
+    section.d10 = diameter(0.10);
+    section.d15 = diameter(0.15);
+    section.d50 = diameter(0.50);
+    section.d80 = diameter(0.80);
+    section.d90 = diameter(0.90);
+    section.d95 = diameter(0.95);
+    section.d10_rel = section.d10 / whole.diameter(0.10);
+    section.d50_rel = section.d50 / whole.diameter(0.50);
+    section.d80_rel = section.d80 / whole.diameter(0.80);
+    section.d90_rel = section.d90 / whole.diameter(0.90);
+    section.d95_rel = section.d95 / whole.diameter(0.95);
+    for (const double sieve : table.sieves) section.passing.push_back(curve ? curve->passing(sieve) : nan);
+    table.sections.push_back(std::move(section));
+  }
+  return table;
+}
+
+}  // namespace scree

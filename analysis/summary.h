@@ -1,0 +1,36 @@
+#pragma once
+// The outcome of a run for other programs: summary.json and sections.csv.
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+#include "analysis/results.h"
+
+namespace scree {
+
+/// Writes summary.json in one step (a reader never sees half of it). Totals are over all seeds, `per_seed`
+/// lists each; a value that does not exist (an empty section, the deviation of one seed) is null. `sections`
+/// is the scenario's own number of sections, `further_sections` the other ones. Throws std::runtime_error
+/// when the file cannot be written.
+void write_summary(const RunResult& result, const std::filesystem::path& file);
+
+/// Writes sections.csv: one row for each seed, table and section; a value that does not exist is empty.
+/// Throws std::runtime_error when the file cannot be written.
+void write_sections_csv(const RunResult& result, const std::filesystem::path& file);
+
+/// A value of one section for each seed, in the order of the seeds; NaN for a seed without this section.
+std::vector<double> over_seeds(const RunResult& result, std::size_t table, std::size_t section,
+                               const std::function<double(const Section&)>& value);
+
+/// The table number `table` of the first seed that has it (names and places of the sections); none when no
+/// seed has it.
+const SectionTable* section_layout(const RunResult& result, std::size_t table);
+
+/// A number of a section under its name in summary.json and sections.csv.
+struct SectionField {
+  const char* name;
+  std::function<double(const Section&)> value;
+};
+const std::vector<SectionField>& section_fields();
+
+}  // namespace scree

@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+"""Extracts the values that runs are compared with from the thesis's tables.
+
+    extract.py TABLES [OUTPUT]
+
+TABLES is the folder of CSV tables extracted from the thesis; OUTPUT defaults to the folder of this script.
+Writes results.csv (SI units; columns in README.md) and copies the tables that the tests read as they are.
+"""
+import csv
+import pathlib
+import re
+import shutil
+import statistics
+import sys
+
+COPIES = ['psd_constraints.csv', 'lab_repose_pfc3d_summary.csv', 'lab_segregation_pfc3d_psd.csv',
+          'model_parameters.csv']
+CASES = ['A1', 'A3', 'B1', 'C1', 'D1', 'D2', 'D6', 'lateral', 'cm_field_3sec', 'cm_field_6sec', 'qb_field_5sec',
+         'lab_segregation']
+QUANTITIES = {'chi': 'chi', 'd10': 'd10', 'd50': 'd50', 'd80': 'd80', 'd10_rel': 'd10_rel', 'd50_rel': 'd50_rel',
+              'mass_in_section': 'mass_t', 'share_d_gt_1m': 'share_above_1m',
+              'share_d_gt_1m_orig': 'share_above_1m_orig'}
+UNITS = {'mm': ('m', 1e-3), 'cm': ('m', 1e-2), 'm': ('m', 1), 't': ('t', 1), 'pct': ('-', 1e-2), '-': ('-', 1),
+         'deg': ('deg', 1)}
+SECTION = re.compile(r'S\d|top|middle|bottom|whole')
+COLUMNS = ['case', 'quantity', 'section', 'kind', 'value', 'std', 'unit', 'relation', 'source']
+
+
+class Results:
+    """One row a (case, quantity, section, kind, relation); of repeats the first with a deviation stays."""
+
+    def __init__(self):
+        self.rows = {}
+
+    def add(self, case, quantity, section, kind, value, std, unit, relation, source):
+        unit, factor = UNITS[unit]
+        key = (case, quantity, section, kind, 'eq' if relation in ('eq', 'approx', 'derived') else relation)
+        old = self.rows.get(key)
+        if old and (old['std'] or std is None):
+            return
+        number = lambda x: '' if x is None else '%.6g' % (x * factor)
+        self.rows[key] = dict(zip(COLUMNS, (case, quantity, section, kind, number(value), number(std), unit, relation,
+                                            source)))
+
+
+def rows(folder, name):
+    with open(folder / name, newline='') as stream:
+        return list(csv.DictReader(stream))
+
+
+def optional(text):
+    return float(text) if text else None
+
+
+def profiles(tables, out):
+    for r in rows(tables, 'segregation_profiles.csv'):
+        if r['case'] not in CASES or r['quantity'] not in QUANTITIES or not SECTION.fullmatch(r['section_or_xl']):
+            continue
+        if r['case'] == 'cm_field_6sec' and (r['quantity'] == 'chi' or r['quantity'].endswith('_rel')):
+            continue  # complete in tables C.7 to C.14, below
+        out.add(r['case'], QUANTITIES[r['quantity']], r['section_or_xl'], r['kind'], float(r['value']),
+                optional(r['std']), r['unit'], r['relation'], 'line ' + r['source_line'])
+
+
+def cm_field(tables, out):
+    for r in rows(tables, 'cm_field_segregation_degree_summary.csv'):
+        out.add('cm_field_6sec', 'chi', 'S' + r['section'], 'measured', float(r['mean_computed']),
+                float(r['std_computed']), '-', 'derived', 'C.7')
+    grading = {(r['image'], int(r['section'])): r for r in rows(tables, 'cm_field_grading.csv')}
+    images = sorted({image for image, _ in grading}, key=int)
+    for percent in (10, 50, 80, 90, 95):
+        column = 'd%d_cm' % percent
+        for k in range(1, 7):
+            ratio = [float(grading[i, k][column]) / float(grading[i, 0][column]) for i in images]
+            out.add('cm_field_6sec', 'd%d_rel' % percent, 'S%d' % k, 'measured', statistics.mean(ratio),
+                    statistics.stdev(ratio), '-', 'derived', 'C.8 C.%d' % (8 + k))
+
+
+def laboratory(tables, out):
+    summary = {(r['section'], r['statistic']): r
+               for r in rows(tables, 'lab_segregation_characteristic_diameters_summary.csv')}
+    measured = rows(tables, 'lab_segregation_measured_diameters_derived.csv')
+    for section in ('top', 'middle', 'bottom'):
+        for q in ('d10', 'd50', 'd80'):
+            out.add('lab_segregation', q, section, 'pfc3d', float(summary[section, 'mean'][q + '_mm']),
+                    float(summary[section, 'std'][q + '_mm']), 'mm', 'eq', 'C.4')
+            values = [float(r[q + '_mm']) for r in measured if r['section'] == section]
+            out.add('lab_segregation', q, section, 'measured', statistics.mean(values), statistics.stdev(values), 'mm',
+                    'derived', 'C.1-C.3')
+    for r in rows(tables, 'lab_segregation_slope_angle_summary.csv'):
+        out.add('lab_segregation', 'slope_angle', 'whole', r['kind'], float(r['mean_deg']), float(r['std_deg']), 'deg',
+                'eq', 'C.15')
+
+
+def repose(tables, out):
+    for r in rows(tables, 'lab_repose_pfc3d_summary.csv'):
+        out.add('lab_repose_%s_%s' % (r['mu'], r['mu_r']), 'angle', 'whole', 'pfc3d', float(r['mean_deg']),
+                float(r['std_deg']), 'deg', 'eq', 'B.2')
+    setups = {(r['setup'], r['quantity']): r for r in rows(tables, 'setups.csv')}
+
+    def setup(name, quantity):
+        return float(setups[name, quantity]['value'])
+
+    def line(name, quantity):
+        return 'line ' + setups[name, quantity]['source_line']
+
+    out.add('lab_repose_0.2_0.2', 'angle', 'whole', 'measured', setup('lab_repose_result', 'angle_measured_mean'),
+            setup('lab_repose_result', 'angle_measured_std'), 'deg', 'eq', 'B.1')
+    for r in rows(tables, 'field_repose_pfc3d_summary.csv'):
+        out.add('field_repose_%s_%s_%s' % (r['mine'], r['mu'], r['mu_r']), 'angle', 'whole', 'pfc3d',
+                float(r['mean_deg']), float(r['std_deg']), 'deg', 'eq', 'B.3' if r['mine'] == 'CM' else 'B.5')
+    for mine, name in (('CM', 'cm'), ('QB', 'qb')):
+        mu = setups['field_repose_result', name + '_mu_calibrated']['value']
+        case = 'field_repose_%s_%s_%s' % (mine, mu, mu)
+        out.add(case, 'angle', 'whole', 'pfc3d', setup('field_repose_result', name + '_angle_mean'),
+                setup('field_repose_result', name + '_angle_std'), 'deg', 'eq',
+                line('field_repose_result', name + '_angle_mean'))
+        # One reference angle, 37 +- 3, serves both mines.
+        out.add(case, 'angle', 'whole', 'measured', setup('cm_mine', 'repose_angle'),
+                setup('cm_mine', 'repose_angle_std'), 'deg', 'eq', line('cm_mine', 'repose_angle'))
+
+
+def main():
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    tables = pathlib.Path(sys.argv[1])
+    output = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else pathlib.Path(__file__).resolve().parent
+    out = Results()
+    for part in (profiles, cm_field, laboratory, repose):
+        part(tables, out)
+    with open(output / 'results.csv', 'w', newline='') as stream:
+        writer = csv.DictWriter(stream, COLUMNS, lineterminator='\n')
+        writer.writeheader()
+        writer.writerows(sorted(out.rows.values(), key=lambda r: [r[c] for c in COLUMNS[:4]]))
+    for name in COPIES:
+        shutil.copyfile(tables / name, output / name)
+
+
+if __name__ == '__main__':
+    main()

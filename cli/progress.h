@@ -1,0 +1,34 @@
+#pragma once
+// Progress of several seeds at once: a bar with time left on a terminal, plain lines elsewhere.
+#include <chrono>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "sim/scene/run.h"
+
+namespace scree {
+
+class ProgressDisplay {
+ public:
+  explicit ProgressDisplay(std::vector<std::uint64_t> seeds);
+  /// Called from any thread.
+  void update(std::size_t seed_index, const RunProgress& progress);
+  /// Ends the bar's line.
+  void finish();
+
+ private:
+  void draw(bool last);
+  std::vector<std::uint64_t> seeds_;
+  std::vector<RunProgress> progress_;
+  std::chrono::steady_clock::time_point start_, drawn_;
+  bool terminal_;
+  bool line_open_ = false;
+  std::mutex mutex_;
+};
+
+/// "1 min 20 s"
+std::string spell_duration(double seconds);
+
+}  // namespace scree

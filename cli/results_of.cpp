@@ -1,0 +1,90 @@
+#include "cli/results_of.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/slope_profile.h"
+#include "scree_version.h"
+#include "sim/scene/ground.h"
+
+namespace scree {
+namespace {
+constexpr double kOverlapWarning = 0.10;  // of the smaller radius; physics of soft spheres beyond it is doubtful
+}
+
+SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outcome) {
+  SeedResult r;
+  r.seed = seed;
+  r.particles = static_cast<std::int64_t>(outcome.original.size());
+  r.fixed_balls = outcome.fixed_balls;
+  for (const Grain& g : outcome.original) r.mass += g.mass;
+  r.wall_seconds = outcome.wall_seconds;
+  r.simulated_seconds = outcome.simulated_seconds;
+  r.particle_steps = outcome.statistics.particle_steps;
+  r.steps = outcome.statistics.steps;
+  r.time_step_min = outcome.statistics.time_step_min;
+  r.time_step_max = outcome.statistics.time_step_max;
+  r.largest_overlap_ratio = outcome.statistics.largest_overlap_ratio;
+  r.lost_particles = outcome.statistics.lost_particles;
+  r.lost_mass = outcome.statistics.lost_mass;
+  r.at_rest = outcome.at_rest && !outcome.interrupted;
+  r.interrupted = outcome.interrupted;
+  r.final_state = std::move(outcome.final_state);
+  r.original = std::move(outcome.original);
+  if (const auto* dump = std::get_if<EndDump>(&scenario.experiment)) {
+    // What is not yet dumped when the user ends a run is in the container, not in the pile.
+    int last = 0;
+    for (const Grain& g : r.final_state.grains) last = std::max(last, g.dump);
+    std::vector<Grain> dumped;
+    for (const Grain& g : r.original)
+      if (g.dump <= last) dumped.push_back(g);
+    if (!dumped.empty()) {
+      r.sections.push_back(
+          analyse_sections(r.final_state.grains, dumped, dump->bench.height, scenario.output.sections));
+      for (const int n : scenario.output.further_sections)
+        r.sections.push_back(analyse_sections(r.final_state.grains, dumped, dump->bench.height, n));
+    }
+    r.profile = slope_profile(r.final_state.grains);
+    r.slope_angle = slope_angle(r.profile, dump->bench.height);
+  } else if (const auto* lift = std::get_if<ReposeLift>(&scenario.experiment)) {
+    if (!r.final_state.grains.empty())
+      r.repose = measure_repose(r.final_state.grains, lift->base_layer == BaseLayer::none ? 0.0 : 1.0);
+  }
+  return r;
+}
+
+RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds, std::vector<std::string> notes,
+                       const std::vector<ReferenceValue>& reference, double wall_seconds) {
+  RunResult result;
+  result.title = scenario.title;
+  result.scenario = scenario.name;
+  result.engine = scenario.engine == EngineKind::rrlinear ? "rrlinear" : "impulse";
+  result.version = fmt::format("{} ({})", SCREE_VERSION, SCREE_REVISION);
+  result.seeds = std::move(seeds);
+  result.notes = std::move(notes);
+  result.wall_seconds = wall_seconds;
+  if (const auto* dump = std::get_if<EndDump>(&scenario.experiment)) result.bench_height = dump->bench.height;
+  result.comparison = compare_with_reference(result.seeds, reference, scenario.compare);
+
+  double overlap = 0, lost = 0, mass = 0;
+  std::int64_t lost_count = 0;
+  for (const SeedResult& s : result.seeds) {
+    overlap = std::max(overlap, s.largest_overlap_ratio);
+    lost += s.lost_mass, lost_count += s.lost_particles, mass += s.mass;
+    if (s.interrupted) result.notes.push_back(fmt::format("seed {} was ended by the user: its pile is not finished", s.seed));
+  }
+  if (overlap > kOverlapWarning)
+    result.notes.push_back(
+        fmt::format("the largest overlap was {:.0f} % of the smaller radius, above {:.0f} %: spheres this soft deform too much "
+                    "under impact; raise material.effective_modulus_pa to see whether the result depends on it",
+                    100 * overlap, 100 * kOverlapWarning));
+  if (lost_count > 0)
+    result.notes.push_back(fmt::format("{} spheres ({:.2f} t, {:.2f} % of the mass) left the model and are not in the pile", lost_count,
+                                       lost / 1000, 100 * lost / mass));
+  if (scenario.engine == EngineKind::impulse)
+    result.notes.push_back("the impulse engine is not calibrated: its repose angles are not those of rrlinear");
+  return result;
+}
+
+}  // namespace scree

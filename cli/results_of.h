@@ -1,0 +1,16 @@
+#pragma once
+// From what the simulation ends with to what analysis makes of it.
+#include "analysis/results.h"
+#include "sim/scene/run.h"
+#include "sim/scene/scenario.h"
+
+namespace scree {
+
+/// Analyses one seed: sections of the slope, slope angle and profile, or repose angle.
+SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outcome);
+
+/// Puts the seeds together, compares with the reference cases and adds what a reader must know.
+RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds, std::vector<std::string> notes,
+                       const std::vector<ReferenceValue>& reference, double wall_seconds);
+
+}  // namespace scree

@@ -1,0 +1,170 @@
+// scree run: a scenario, its seeds side by side, and what comes of it in a folder.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <fstream>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "analysis/report.h"
+#include "analysis/summary.h"
+#include "cli/commands.h"
+#include "cli/progress.h"
+#include "cli/results_of.h"
+#include "cli/table.h"
+#include "scree_version.h"
+#include "sim/io/trajectory.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// runs/NAME, or the first of runs/NAME-2, ... that is not there.
+fs::path free_folder(const std::string& name) {
+  fs::path folder = fs::path("runs") / name;
+  for (int k = 2; fs::exists(folder); ++k) folder = fs::path("runs") / fmt::format("{}-{}", name, k);
+  return folder;
+}
+
+void write_text(const fs::path& file, const std::string& text) {
+  std::ofstream out(file);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error(fmt::format("{}: cannot be written (disk full, or no permission?)", file.string()));
+}
+
+// The seeds of a run: `count` of them, those of the scenario first.
+std::vector<std::uint64_t> chosen_seeds(const scree::Scenario& scenario, int count) {
+  std::vector<std::uint64_t> seeds = scenario.seeds;
+  if (count == 0) return seeds;
+  while (static_cast<int>(seeds.size()) < count) seeds.push_back(*std::max_element(seeds.begin(), seeds.end()) + 1);
+  seeds.resize(static_cast<std::size_t>(count));
+  return seeds;
+}
+
+// HDF5 as packaged is not safe for several threads; frames are rare.
+std::mutex trajectory_mutex;
+
+struct SeedRun {
+  std::uint64_t seed = 0;
+  std::unique_ptr<scree::SeedResult> result;
+  std::vector<std::string> notes;
+  std::string failure;
+};
+
+void run_seed(const scree::Scenario& scenario, SeedRun& run, int threads, const fs::path& folder,
+              scree::ProgressDisplay& display, std::size_t index) {
+  std::unique_ptr<scree::TrajectoryWriter> trajectory;
+  scree::RunHooks hooks;
+  if (scenario.output.trajectory) {
+    hooks.begin = [&](const std::vector<scree::Grain>& grains, const std::vector<scree::Grain>& fixed) {
+      const std::lock_guard lock(trajectory_mutex);
+      fs::create_directories(folder);
+      trajectory = std::make_unique<scree::TrajectoryWriter>(
+          folder / "particles.h5", grains, fixed,
+          scree::TrajectoryInfo{"scree user", SCREE_VERSION, scenario.resolved_yaml, run.seed});
+    };
+    hooks.frame = [&](const scree::Snapshot& snapshot, std::int64_t step) {
+      const std::lock_guard lock(trajectory_mutex);
+      trajectory->write(snapshot, step);
+    };
+  }
+  hooks.progress = [&](const scree::RunProgress& p) {
+    display.update(index, p);
+    return interrupted == 0;
+  };
+  try {
+    scree::RunOutcome outcome = scree::run_scenario(scenario, run.seed, threads, hooks);
+    run.notes = outcome.notes;
+    run.result = std::make_unique<scree::SeedResult>(scree::analyse(scenario, run.seed, std::move(outcome)));
+  } catch (const std::exception& error) {
+    run.failure = error.what();
+  }
+  try {
+    const std::lock_guard lock(trajectory_mutex);
+    if (trajectory) trajectory->close();
+    trajectory.reset();
+  } catch (const std::exception& error) {
+    if (run.failure.empty()) run.failure = error.what();
+  }
+}
+
+}  // namespace
+
+int run_run(const RunOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  scree::ScenarioResult loaded = scree::load_scenario(options.file, options.overrides, asset_dir());
+  for (const std::string& warning : loaded.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
+  if (!loaded.errors.empty()) return kBadInput;
+  scree::Scenario& scenario = loaded.scenario;
+
+  const fs::path out = options.out.empty() ? free_folder(scenario.name) : options.out;
+  if (!options.force && fs::exists(out) && !(fs::is_directory(out) && fs::is_empty(out))) {
+    fmt::print(stderr, "{}: is there already; choose another --out, or --force to write into it\n", out.string());
+    return kBadInput;
+  }
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error || access(out.c_str(), W_OK) != 0) {
+    fmt::print(stderr, "{}: cannot be written: {}; choose another --out\n", out.string(),
+               error ? error.message() : "no permission");
+    return kBadInput;
+  }
+  scenario.seeds = chosen_seeds(scenario, options.seeds);
+  write_text(out / "scenario.yaml", scenario.resolved_yaml);
+
+  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int threads = options.threads > 0 ? options.threads : cores;
+  const int side_by_side = std::min<int>(threads, static_cast<int>(scenario.seeds.size()));
+  std::vector<SeedRun> runs(scenario.seeds.size());
+  for (std::size_t k = 0; k < runs.size(); ++k) runs[k].seed = scenario.seeds[k];
+  {
+    scree::ProgressDisplay display(scenario.seeds);
+    std::atomic<std::size_t> next{0};
+    std::vector<std::jthread> workers;
+    for (int w = 0; w < side_by_side; ++w)
+      workers.emplace_back([&] {
+        for (std::size_t k = next++; k < runs.size() && !interrupted; k = next++)
+          run_seed(scenario, runs[k], std::max(1, threads / side_by_side), out / fmt::format("seed_{}", runs[k].seed),
+                   display, k);
+      });
+    workers.clear();
+    display.finish();
+  }
+
+  std::vector<scree::SeedResult> results;
+  std::vector<std::string> notes;
+  bool failed = false;
+  for (SeedRun& run : runs) {
+    if (!run.failure.empty()) {
+      failed = true;
+      fmt::print(stderr, "seed {}: {}\n", run.seed, run.failure);
+      notes.push_back(fmt::format("seed {} failed: {}", run.seed, run.failure));
+    }
+    notes.insert(notes.end(), run.notes.begin(), run.notes.end());
+    if (run.result) results.push_back(std::move(*run.result));
+  }
+  if (results.empty()) {
+    fmt::print(stderr, "no seed came to a result; what was written is in {}\n", out.string());
+    return interrupted ? kInterrupted : kFailed;
+  }
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const scree::RunResult result = scree::put_together(
+      scenario, std::move(results), std::move(notes), scree::read_reference(asset_dir() / "reference" / "results.csv"), wall);
+  scree::write_summary(result, out / "summary.json");
+  scree::write_sections_csv(result, out / "sections.csv");
+  scree::SceneFacts scene;
+  if (const auto* dump = std::get_if<scree::EndDump>(&scenario.experiment)) scene.bench_slope = dump->bench.slope_deg;
+  scree::write_report(result, out, scene);
+
+  scree::print_result(result);
+  fmt::print("\nreport: {}\n", (out / "report.html").string());
+  if (interrupted) return kInterrupted;
+  return failed ? kFailed : kOk;
+}

@@ -1,0 +1,61 @@
+#include "cli/table.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "analysis/summary.h"
+
+namespace scree {
+namespace {
+
+std::string with_std(double mean, std::optional<double> std) {
+  if (std && !std::isnan(*std)) return fmt::format("{:.2f} +- {:.2f}", mean, *std);
+  return fmt::format("{:.2f}", mean);
+}
+
+}  // namespace
+
+void print_comparison(const std::vector<Comparison>& comparison) {
+  if (comparison.empty()) return;
+  fmt::print("\n{:<16} {:<8} {:<8} {:<9} {:>17} {:>17} {:>7}\n", "case", "value", "section", "kind", "printed", "simulated",
+             "z");
+  for (const Comparison& c : comparison)
+    fmt::print("{:<16} {:<8} {:<8} {:<9} {:>17} {:>17} {:>7}\n", c.reference.case_name, c.reference.quantity,
+               c.reference.section, c.reference.kind, with_std(c.reference.value, c.reference.std),
+               with_std(c.simulated, c.simulated_std), c.z ? fmt::format("{:+.1f}", *c.z) : "-");
+}
+
+void print_result(const RunResult& result) {
+  for (const SeedResult& s : result.seeds)
+    fmt::print("seed {}: {} spheres, {:.1f} s simulated in {:.1f} s, {:.1f} M particle-steps/s, largest overlap {:.0f} %, lost {}{}\n",
+               s.seed, s.particles, s.simulated_seconds, s.wall_seconds, s.particle_steps / s.wall_seconds / 1e6,
+               100 * s.largest_overlap_ratio, s.lost_particles, s.at_rest ? "" : "  (not at rest)");
+  if (const SectionTable* layout = section_layout(result, 0)) {
+    fmt::print("\n{:<8} {:>6} {:>9} {:>16} {:>8} {:>9}\n", "section", "x/L", "mass t", "chi", "D50 m", "D50/D50'");
+    for (std::size_t k = 0; k < layout->sections.size(); ++k) {
+      const auto mean = [&](auto get) { return mean_std(over_seeds(result, 0, k, get)); };
+      const MeanStd chi = mean([](const Section& x) { return x.chi; });
+      fmt::print("{:<8} {:>6.2f} {:>9.1f} {:>16} {:>8.3f} {:>9.2f}\n", layout->sections[k].name,
+                 layout->sections[k].x_over_l, mean([](const Section& x) { return x.mass / 1000; }).mean,
+                 with_std(chi.mean, chi.std), mean([](const Section& x) { return x.d50; }).mean,
+                 mean([](const Section& x) { return x.d50_rel; }).mean);
+    }
+  }
+  std::vector<double> angle, half, fit;
+  for (const SeedResult& s : result.seeds)
+    if (s.repose) {
+      angle.push_back(s.repose->angle);
+      half.push_back(s.repose->half_coverage);
+      fit.push_back(s.repose->slope_fit);
+    }
+  if (!angle.empty()) {
+    const MeanStd a = mean_std(angle), h = mean_std(half), f = mean_std(fit);
+    fmt::print("\nrepose angle atan(H/R) {} deg; half coverage {}; slope fit {}\n", with_std(a.mean, a.std),
+               with_std(h.mean, h.std), with_std(f.mean, f.std));
+  }
+  print_comparison(result.comparison);
+  for (const std::string& note : result.notes) fmt::print("\nnote: {}\n", note);
+}
+
+}  // namespace scree

@@ -1,0 +1,15 @@
+#pragma once
+// Writing a text file whole.
+#include <filesystem>
+#include <string>
+
+namespace scree {
+
+/// Writes a text file in one step: a reader sees the old file or the new one, never half of it.
+/// Throws std::runtime_error that names the file and the reason.
+void write_text_file(const std::filesystem::path& file, const std::string& text);
+
+/// Throws std::runtime_error "cannot write FILE: REASON".
+[[noreturn]] void fail_to_write(const std::filesystem::path& file, const std::string& reason);
+
+}  // namespace scree

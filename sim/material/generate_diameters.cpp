@@ -1,0 +1,151 @@
+// Spheres from a grading: systematic sampling of the curve's mass, from coarse to fine.
+//
+// With m the mass drawn so far, the next sphere stands for the next stretch [m, m + v(d)] of the curve's
+// mass, v(d) being its own. Its diameter is the curve's at a random place u in that stretch:
+//
+//     d = D(1 - (m + u v(d)) / M),   v(d) = density pi d^3 / 6,   u uniform in [0, 1)
+//
+// which has one solution, as the left side rises with d and the right side falls. Each error is carried to
+// the next sphere. At any diameter the mass drawn then differs from the curve's by less than the mass of one
+// sphere of about that diameter. Where that is more than the bound (the coarse end of a small load), whole
+// draws are repeated, and the first within the bound, or else the nearest to it, is taken.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "sim/material/grading.h"
+#include "sim/material/random.h"
+
+namespace scree {
+
+namespace {
+
+constexpr double passing_bound = 0.0199;  // share; the promise is 2 points
+constexpr double mass_bound = 0.0049;     // share; the promise is 0.5 %
+constexpr int most_draws = 200;
+constexpr double most_spheres = 2e7;
+
+/// The curve read from coarse to fine; diameters fall slowly, so that the segment is at hand.
+class CoarseToFine {
+ public:
+  explicit CoarseToFine(const Grading& grading)
+      : points_(grading.points()), segment_(grading.points().size() - 1) {}
+
+  /// Root d of d = D(1 - (mass_share + scale d^3)).
+  double solve(double mass_share, double scale) {
+    const auto rest = [&](double d) { return 1 - mass_share - scale * d * d * d; };
+    while (segment_ + 1 < points_.size() && rest(points_[segment_].diameter) > points_[segment_].passing)
+      ++segment_;
+    while (segment_ > 1 && rest(points_[segment_ - 1].diameter) < points_[segment_ - 1].passing) --segment_;
+    const auto &a = points_[segment_ - 1], &b = points_[segment_];
+    const double slope = (b.passing - a.passing) / std::log(b.diameter / a.diameter);
+    // f(t) = passing(a e^t) - rest(a e^t) rises; Newton kept inside a shrinking bracket.
+    double low = 0, high = std::log(b.diameter / a.diameter);
+    if (a.passing >= rest(a.diameter)) return a.diameter;
+    if (b.passing <= rest(b.diameter)) return b.diameter;
+    double t = 0.5 * (low + high);
+    for (int i = 0; i < 60; ++i) {
+      const double d = a.diameter * std::exp(t);
+      const double f = a.passing + slope * t - rest(d);
+      (f > 0 ? high : low) = t;
+      double next = t - f / (slope + 3 * scale * d * d * d);
+      if (!(next > low && next < high)) next = 0.5 * (low + high);
+      if (std::abs(next - t) < 1e-13) break;
+      t = next;
+    }
+    return a.diameter * std::exp(t);
+  }
+
+ private:
+  const std::vector<Grading::Point>& points_;
+  std::size_t segment_;
+};
+
+std::vector<double> draw(const Grading& grading, double mass, double sphere_factor, Random& random) {
+  CoarseToFine curve(grading);
+  const double finest = sphere_factor * std::pow(grading.min_diameter(), 3);
+  std::vector<double> diameters;
+  double drawn = 0;
+  // A last sphere that would leave more mass over than without it is not drawn.
+  while (drawn + 0.5 * finest < mass) {
+    const double d = curve.solve(drawn / mass, random.uniform() * sphere_factor / mass);
+    diameters.push_back(d);
+    drawn += sphere_factor * d * d * d;
+  }
+  return diameters;
+}
+
+/// Largest of the passing errors at the grading's points and the mass error, each over its bound; 1 or less:
+/// both are kept.
+double worst_error(const std::vector<double>& diameters, const Grading& grading, double mass,
+                   double sphere_factor) {
+  const auto& points = grading.points();
+  std::vector<double> between(points.size(), 0.0);  // mass finer than point i, not finer than point i - 1
+  double total = 0;
+  for (const double d : diameters) {
+    const auto above =
+        std::lower_bound(points.begin(), points.end(), d,
+                         [](const Grading::Point& point, double x) { return point.diameter < x; });
+    const double sphere = sphere_factor * d * d * d;
+    between[std::min<std::size_t>(above - points.begin(), points.size() - 1)] += sphere;
+    total += sphere;
+  }
+  double worst = std::abs(total / mass - 1) / mass_bound, finer = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    finer += between[i];
+    worst = std::max(worst, std::abs(finer / total - points[i].passing) / passing_bound);
+  }
+  return worst;
+}
+
+/// Expected number of spheres: the integral of dP M / v(d), exact for a curve linear in log d.
+double expected_count(const Grading& grading, double mass, double sphere_factor) {
+  double sum = 0;
+  const auto& points = grading.points();
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const double a = points[i - 1].diameter, b = points[i].diameter;
+    sum += (points[i].passing - points[i - 1].passing) / std::log(b / a) *
+           (std::pow(a, -3) - std::pow(b, -3)) / 3;
+  }
+  return sum * mass / sphere_factor;
+}
+
+}  // namespace
+
+std::vector<double> generate_diameters(const Grading& grading, double mass, double density,
+                                       std::uint64_t seed, std::uint64_t dump) {
+  if (!(std::isfinite(mass) && mass > 0))
+    throw std::invalid_argument(fmt::format("mass {} kg must be above 0", mass));
+  if (!(std::isfinite(density) && density > 0))
+    throw std::invalid_argument(fmt::format("density {} kg/m3 must be above 0", density));
+  const double sphere_factor = density * std::numbers::pi / 6;
+  if (mass < sphere_factor * std::pow(grading.min_diameter(), 3))
+    throw std::invalid_argument(
+        fmt::format("mass {} kg is less than the smallest sphere of grading {}", mass, grading.name()));
+  if (const double count = expected_count(grading, mass, sphere_factor); count > most_spheres)
+    throw std::invalid_argument(fmt::format("{} kg of grading {} are {:.2g} spheres; scalp its fine end",
+                                            mass, grading.name(), count));
+
+  Random random(seed, dump, RandomPurpose::diameters);
+  std::vector<double> best;
+  double best_error = 0;
+  for (int i = 0; i < most_draws; ++i) {
+    std::vector<double> diameters = draw(grading, mass, sphere_factor, random);
+    const double error = worst_error(diameters, grading, mass, sphere_factor);
+    if (best.empty() || error < best_error) {
+      best = std::move(diameters);
+      best_error = error;
+    }
+    if (best_error <= 1) break;
+  }
+  // One sphere can be a little larger than the one before it, each having its own u.
+  std::sort(best.begin(), best.end(), std::greater<>());
+  return best;
+}
+
+}  // namespace scree

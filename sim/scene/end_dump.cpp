@@ -1,0 +1,120 @@
+// Truck loads over the crest of a bench.
+#include <cmath>
+#include <numbers>
+
+#include "sim/material/grading.h"
+#include "sim/scene/ground.h"
+#include "sim/scene/load.h"
+#include "sim/scene/stage.h"
+
+namespace scree {
+namespace {
+
+constexpr double kGuardWall = 0.3;   // thickness of the guard that holds a heaped load while it settles, m
+constexpr double kBedLeaves = 0.5;   // s given to rock that still lies in the bed when the truck drives off
+constexpr double kHoistPause = 2.0;  // s that the bed stays up after hoisting
+
+Quaternion tilt(double degrees) {
+  return Quaternion(Eigen::AngleAxisd(degrees * std::numbers::pi / 180.0, Vec3::UnitY()));
+}
+
+Pose truck_pose(const EndDump& e, double y, double tilt_deg) {
+  return {{-e.truck.setback, y, e.bench.height + e.truck.drop_height}, tilt(tilt_deg)};
+}
+
+// The tailgate hangs from its upper edge. While the bed is hoisted it turns until it hangs plumb.
+Motion swinging_gate(const EndDump& e, double y, double start, double seconds) {
+  constexpr int kSteps = 20;
+  std::vector<Motion::Key> keys;
+  const Vec3 hinge(0, 0, e.truck.load_box.z());
+  for (int k = 0; k <= kSteps; ++k) {
+    const double degrees = e.truck.tilt_deg * k / kSteps;
+    const Pose bed = truck_pose(e, y, degrees);
+    Pose gate;
+    gate.rotation = tilt(0);  // plumb in world axes, whatever the tilt of the bed
+    gate.position = bed.to_world(hinge) - gate.rotation * hinge;
+    keys.push_back({start + seconds * k / kSteps, gate});
+  }
+  return Motion(std::move(keys));
+}
+
+// Walls above the sides of the bed, in the bed's frame, for a load that is heaped.
+std::vector<TriangleMesh> guard(const Vec3& box, double height) {
+  const double l = box.x(), h = 0.5 * box.y(), t = kGuardWall, low = box.z(), high = height + 1.0;
+  return {make_box({-l - t, -h - t, low}, {-l, h + t, high}), make_box({0, -h - t, low}, {t, h + t, high}),
+          make_box({-l, -h - t, low}, {0, -h, high}), make_box({-l, h, low}, {0, h + t, high})};
+}
+
+}  // namespace
+
+RunOutcome run_end_dump(const Scenario& scenario, const EndDump& e, std::uint64_t seed, int threads,
+                        const RunHooks& hooks) {
+  const double toe = toe_of(e.bench), half = 0.5 * e.bench.width;
+  const Vec3 low(-e.bench.top_length - 2, -half - 2, -3);
+  const Vec3 high(toe + e.bench.floor_length + 2, half + 2,
+                  e.bench.height + e.truck.drop_height + 3 * e.truck.load_box.norm());
+  Stage stage(scenario, seed, threads, hooks, low, high);
+  RockWorld& world = stage.world();
+
+  // Every load first: what will be dumped does not depend on what happens.
+  const Grading grading = read_grading(scenario.grading_file);
+  const double start_tilt = e.truck.release == Release::hoist ? 0.0 : e.truck.tilt_deg;
+  std::vector<std::vector<NewSphere>> loads;
+  std::vector<double> heights, points;
+  for (int dump = 1; dump <= e.dumps; ++dump) {
+    const std::vector<double> diameters = generate_diameters(grading, e.payload, scenario.material.density,
+                                                             seed, static_cast<std::uint64_t>(dump));
+    const Load load = fill_region({e.truck.load_box}, diameters, seed, static_cast<std::uint64_t>(dump));
+    points.push_back(e.points[static_cast<std::size_t>(dump - 1) % e.points.size()]);
+    heights.push_back(load.height);
+    const Pose pose = truck_pose(e, points.back(), start_tilt);
+    std::vector<NewSphere> spheres;
+    for (std::size_t k = 0; k < diameters.size(); ++k)
+      spheres.push_back({pose.to_world(load.positions[k]), diameters[k], dump});
+    loads.push_back(std::move(spheres));
+  }
+  stage.begin(make_base_layer(e.bench, seed), loads);
+  world.add_mesh(make_bench(e.bench), stage.surface({}, {}), Motion());
+  stage.add_tools();
+
+  const TriangleMesh bed_mesh = stage.read(e.truck.bed_mesh, e.truck.scale);
+  const TriangleMesh gate_mesh = stage.read(e.truck.gate_mesh, e.truck.scale);
+  const Surface surface = stage.surface(e.truck.mu, e.truck.mu_r);
+  for (int dump = 1; dump <= e.dumps; ++dump) {
+    const double y = points[static_cast<std::size_t>(dump - 1)];
+    const double share = static_cast<double>(dump - 1) / e.dumps, part = 1.0 / e.dumps;
+    const Pose pose = truck_pose(e, y, start_tilt);
+    stage.set_dump(dump, e.dumps);
+    const int bed = world.add_mesh(bed_mesh, surface, Motion::fixed(pose));
+    const int gate = world.add_mesh(gate_mesh, surface, Motion::fixed(pose));
+    std::vector<int> walls;
+    const double height = heights[static_cast<std::size_t>(dump - 1)];
+    if (height > e.truck.load_box.z())
+      for (TriangleMesh& wall : guard(e.truck.load_box, height))
+        walls.push_back(world.add_mesh(std::move(wall), surface, Motion::fixed(pose)));
+    stage.add_load();
+    if (!stage.advance(e.truck.settle_s, "settling", share, share + 0.1 * part)) return stage.finish();
+    for (const int wall : walls) world.remove_mesh(wall);
+
+    double emptied = share + 0.1 * part;
+    if (e.truck.release == Release::open_gate) {
+      world.remove_mesh(gate);
+    } else {
+      const double start = world.time(), seconds = e.truck.tilt_deg / e.truck.hoist_rate_deg;
+      world.mesh(bed).set_motion(
+          Motion({{start, pose}, {start + seconds, truck_pose(e, y, e.truck.tilt_deg)}}));
+      world.mesh(gate).set_motion(swinging_gate(e, y, start, seconds));
+      emptied = share + 0.6 * part;
+      if (!stage.advance(seconds + kHoistPause, "hoisting", share + 0.1 * part, emptied))
+        return stage.finish();
+    }
+    if (!stage.advance_to_rest("dumping", emptied, share + 0.95 * part)) return stage.finish();
+    world.remove_mesh(bed);
+    if (e.truck.release == Release::hoist) world.remove_mesh(gate);
+    if (!stage.advance(kBedLeaves, "truck leaves", share + 0.95 * part, share + part)) return stage.finish();
+    if (!stage.advance_to_rest("truck leaves", share + part, share + part)) return stage.finish();
+  }
+  return stage.finish();
+}
+
+}  // namespace scree

@@ -1,0 +1,24 @@
+#include "sim/scene/estimate.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace scree {
+
+double total_mass(const Scenario& scenario) {
+  if (const auto* dump = std::get_if<EndDump>(&scenario.experiment)) return dump->payload * dump->dumps;
+  return std::get<ReposeLift>(scenario.experiment).mass;
+}
+
+double estimated_spheres(const Grading& grading, double mass, double density) {
+  double per_volume = 0;  // spheres of diameter d in the volume of rock: 1 / (pi/6 d^3)
+  const auto& points = grading.points();
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const double d1 = points[i - 1].diameter, d2 = points[i].diameter;
+    const double inverse_cube = (std::pow(d1, -3) - std::pow(d2, -3)) / (3 * std::log(d2 / d1));
+    per_volume += (points[i].passing - points[i - 1].passing) * inverse_cube * 6 / std::numbers::pi;
+  }
+  return per_volume * mass / density;
+}
+
+}  // namespace scree

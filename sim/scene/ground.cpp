@@ -1,0 +1,143 @@
+#include "sim/scene/ground.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "sim/material/random.h"
+
+namespace scree {
+namespace {
+
+constexpr double kDepth = 5.0;         // of the solid below the floor, m
+constexpr double kBallDiameter = 1.0;  // of the base layer, thesis setups: base_ball_diameter
+
+double radians(double degrees) {
+  return degrees * std::numbers::pi / 180.0;
+}
+
+// Balls of one row of the layer: at (x, z) on the surface with unit normal (nx, nz), along y.
+void add_row(std::vector<NewSphere>& balls, double x, double z, double nx, double nz, double half_width,
+             bool shifted, BaseLayer layer, Random& random) {
+  const double d = kBallDiameter;
+  for (double y = -half_width + (shifted ? 1.0 : 0.5) * d; y <= half_width - 0.25 * d; y += d) {
+    if (layer == BaseLayer::mixed && random.uniform() < 0.5) {
+      for (const double along : {-0.25, 0.25})
+        for (const double across : {-0.25, 0.25}) {
+          NewSphere ball;
+          ball.position = {x + nz * along * d + nx * 0.25 * d, y + across * d,
+                           z - nx * along * d + nz * 0.25 * d};
+          ball.diameter = 0.5 * d;
+          ball.fixed = true;
+          balls.push_back(ball);
+        }
+      continue;
+    }
+    NewSphere ball;
+    ball.position = {x + 0.5 * d * nx, y, z + 0.5 * d * nz};
+    ball.diameter = d;
+    ball.fixed = true;
+    balls.push_back(ball);
+  }
+}
+
+void add_quad(TriangleMesh& mesh, int a, int b, int c, int d) {
+  mesh.triangles.push_back({a, b, c});
+  mesh.triangles.push_back({a, c, d});
+}
+
+}  // namespace
+
+double toe_of(const BenchSpec& bench) {
+  return bench.height / std::tan(radians(bench.slope_deg));
+}
+
+TriangleMesh make_bench(const BenchSpec& b) {
+  const double toe = toe_of(b), half = 0.5 * b.width;
+  // Surface profile from the back of the top to the end of the floor, and the same below.
+  const double x[] = {-b.top_length, 0.0, toe, toe + b.floor_length};
+  const double z[] = {b.height, b.height, 0.0, 0.0};
+  TriangleMesh mesh;
+  mesh.name = "bench";
+  for (const double y : {-half, half})
+    for (int k = 0; k < 4; ++k) {
+      mesh.vertices.push_back({x[k], y, z[k]});
+      mesh.vertices.push_back({x[k], y, -kDepth});
+    }
+  const auto top = [](int k, int side) { return 8 * side + 2 * k; };
+  const auto bottom = [](int k, int side) { return 8 * side + 2 * k + 1; };
+  for (int k = 0; k < 3; ++k) {
+    add_quad(mesh, top(k, 0), top(k + 1, 0), top(k + 1, 1), top(k, 1));
+    add_quad(mesh, bottom(k, 0), bottom(k, 1), bottom(k + 1, 1), bottom(k + 1, 0));
+    add_quad(mesh, bottom(k, 0), bottom(k + 1, 0), top(k + 1, 0), top(k, 0));
+    add_quad(mesh, bottom(k, 1), top(k, 1), top(k + 1, 1), bottom(k + 1, 1));
+  }
+  add_quad(mesh, bottom(0, 0), top(0, 0), top(0, 1), bottom(0, 1));
+  add_quad(mesh, bottom(3, 0), bottom(3, 1), top(3, 1), top(3, 0));
+  update_closed(mesh);
+  return mesh;
+}
+
+std::vector<NewSphere> make_base_layer(const BenchSpec& b, std::uint64_t seed) {
+  std::vector<NewSphere> balls;
+  if (b.base_layer == BaseLayer::none) return balls;
+  Random random(seed, 0, RandomPurpose::base_layer);
+  const double toe = toe_of(b), angle = radians(b.slope_deg), pitch = kBallDiameter * std::sqrt(0.75),
+               half = 0.5 * b.width;
+  const double r = 0.5 * kBallDiameter;
+  bool shifted = false;
+  // Top, backwards from the crest.
+  for (double x = 0.0; x >= -b.top_length + r; x -= pitch, shifted = !shifted)
+    add_row(balls, x, b.height, 0, 1, half, shifted, b.base_layer, random);
+  // Slope, downwards. Balls of slope and top meet at the crest along the bisector; at the toe the floor's
+  // come first.
+  shifted = true;
+  const double length = b.height / std::sin(angle), toe_gap = r * std::tan(0.5 * angle);
+  double along = 2.0 * r - r * angle;  // one diameter from the last ball of the top, measured round the crest
+  for (; along <= length - toe_gap; along += pitch, shifted = !shifted)
+    add_row(balls, along * std::cos(angle), b.height - along * std::sin(angle), std::sin(angle),
+            std::cos(angle), half, shifted, b.base_layer, random);
+  // Floor, outwards from where its first ball touches the last of the slope.
+  along -= pitch;
+  const double last_x = along * std::cos(angle) + r * std::sin(angle),
+               last_z = b.height - along * std::sin(angle) + r * std::cos(angle);
+  const double rise = last_z - r;
+  double x = last_x + std::sqrt(std::max(pitch * pitch - rise * rise, 0.0));
+  x = std::max(x, toe + toe_gap);
+  for (; x <= toe + b.floor_length - r; x += pitch, shifted = !shifted)
+    add_row(balls, x, 0, 0, 1, half, shifted, b.base_layer, random);
+  return balls;
+}
+
+std::vector<NewSphere> make_floor_layer(double half_width, BaseLayer layer, std::uint64_t seed) {
+  std::vector<NewSphere> balls;
+  if (layer == BaseLayer::none) return balls;
+  Random random(seed, 0, RandomPurpose::base_layer);
+  const double pitch = kBallDiameter * std::sqrt(0.75);
+  bool shifted = false;
+  for (double x = -half_width + 0.5 * kBallDiameter; x <= half_width - 0.5 * kBallDiameter;
+       x += pitch, shifted = !shifted)
+    add_row(balls, x, 0, 0, 1, half_width, shifted, layer, random);
+  return balls;
+}
+
+TriangleMesh make_tube(double inner_radius, double wall, double low, double high, int sides) {
+  TriangleMesh mesh;
+  mesh.name = "tube";
+  const double corner = 1.0 / std::cos(std::numbers::pi / sides);
+  for (int k = 0; k < sides; ++k) {
+    const double a = 2.0 * std::numbers::pi * k / sides, c = std::cos(a) * corner, s = std::sin(a) * corner;
+    for (const double r : {inner_radius, inner_radius + wall})
+      for (const double z : {low, high}) mesh.vertices.push_back({r * c, r * s, z});
+  }
+  for (int k = 0; k < sides; ++k) {
+    const int a = 4 * k, b = 4 * ((k + 1) % sides);  // inner low, inner high, outer low, outer high
+    add_quad(mesh, a, a + 1, b + 1, b);
+    add_quad(mesh, a + 2, b + 2, b + 3, a + 3);
+    add_quad(mesh, a + 1, a + 3, b + 3, b + 1);
+    add_quad(mesh, a, b, b + 2, a + 2);
+  }
+  update_closed(mesh);
+  return mesh;
+}
+
+}  // namespace scree

@@ -1,0 +1,28 @@
+#pragma once
+// Ground of the experiments: bench, floor, base layer of fixed balls.
+#include <cstdint>
+#include <vector>
+
+#include "sim/io/mesh.h"
+#include "sim/scene/scenario.h"
+#include "sim/world/spheres.h"
+
+namespace scree {
+
+/// x of the toe (m).
+double toe_of(const BenchSpec& bench);
+
+/// The bench as a closed solid, 5 m deep below its floor.
+TriangleMesh make_bench(const BenchSpec& bench);
+
+/// Fixed balls that cover top, slope and floor: rows across the slope at a hexagonal pitch, so that no straight
+/// groove leads down it. `mixed` puts four 0.5 m balls at half of the places, drawn at random (thesis, appendix F).
+std::vector<NewSphere> make_base_layer(const BenchSpec& bench, std::uint64_t seed);
+
+/// The same on a square floor at z = 0 from -half_width to half_width.
+std::vector<NewSphere> make_floor_layer(double half_width, BaseLayer layer, std::uint64_t seed);
+
+/// A tube about the z axis, closed as a solid: inner radius of the inscribed circle, from z = low to high (m).
+TriangleMesh make_tube(double inner_radius, double wall, double low, double high, int sides);
+
+}  // namespace scree

@@ -1,0 +1,51 @@
+#pragma once
+// From a scenario and a seed to a pile.
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sim/io/snapshot.h"
+#include "sim/scene/scenario.h"
+#include "sim/world/rock_world.h"
+
+namespace scree {
+
+/// How far a run is.
+struct RunProgress {
+  double share = 0;           ///< of the whole run, 0 to 1, an estimate
+  double time = 0;            ///< simulated, s
+  int dump = 0, dumps = 0;
+  double moving_share = 0;    ///< of the load's mass
+  std::int64_t particles = 0; ///< in the model now
+  double particle_steps = 0;  ///< so far
+  const char* stage = "";     ///< "settling", "dumping", "lifting"
+};
+
+/// What a run tells while it goes on.
+struct RunHooks {
+  /// Every grain that will be dumped, at its place in the container, and the fixed balls; before the first step.
+  std::function<void(const std::vector<Grain>& grains, const std::vector<Grain>& fixed)> begin;
+  /// A frame of the trajectory.
+  std::function<void(const Snapshot&, std::int64_t step)> frame;
+  /// Some ten times a second of simulated time; returning false ends the run, keeping what is done.
+  std::function<bool(const RunProgress&)> progress;
+};
+
+/// What a run ends with.
+struct RunOutcome {
+  Snapshot final_state;
+  std::vector<Grain> original;      ///< every grain as generated
+  std::int64_t fixed_balls = 0;
+  WorldStatistics statistics;
+  double simulated_seconds = 0, wall_seconds = 0;
+  bool at_rest = true;              ///< every load came to rest before stop.max_time
+  bool interrupted = false;
+  std::vector<std::string> notes;
+};
+
+/// Runs one seed with `threads` worker threads. Throws BlowUp, std::runtime_error (meshes), std::invalid_argument (rock that does not
+/// fit its container).
+RunOutcome run_scenario(const Scenario& scenario, std::uint64_t seed, int threads, const RunHooks& hooks);
+
+}  // namespace scree

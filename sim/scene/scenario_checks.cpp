@@ -1,0 +1,203 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <numbers>
+#include <stdexcept>
+
+#include "sim/io/mesh.h"
+#include "sim/scene/estimate.h"
+#include "sim/scene/scenario_read.h"
+#include "sim/scene/scenario_values.h"
+
+namespace scree {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Densest packing a container is filled to: a little below random close packing (0.64) of equal spheres.
+constexpr double kDensestFill = 0.62;
+
+class Checks {
+ public:
+  Checks(const Scenario& scenario, const fs::path& asset_dir, ReadNotes& notes,
+         std::vector<std::string>& warnings)
+      : s_(scenario), asset_dir_(asset_dir), notes_(notes), warnings_(warnings) {}
+
+  void all() {
+    meshes();
+    read_the_grading();
+    if (const auto* dump = std::get_if<EndDump>(&s_.experiment)) end_dump(*dump);
+    if (const auto* lift = std::get_if<ReposeLift>(&s_.experiment)) repose_lift(*lift);
+    tools();
+    if (notes_.good({&s_.stop.min_time, &s_.stop.max_time}) && s_.stop.min_time > s_.stop.max_time)
+      fail(&s_.stop.min_time, fmt::format("stop.min_time_s: {} is more than stop.max_time_s ({})",
+                                          s_.stop.min_time, s_.stop.max_time));
+    sections();
+    compare();
+  }
+
+ private:
+  void fail(const void* value, std::string message) {
+    report(notes_.errors, notes_.places.at(value), std::move(message));
+  }
+
+  void meshes() {
+    for (const MeshUse& use : notes_.meshes) {
+      if (!notes_.good({use.scale})) continue;
+      const MeshReport found = load_mesh(*use.file, *use.scale).report;
+      for (const std::string& error : found.errors) report(notes_.errors, use.place, use.key + ": " + error);
+      for (const std::string& warning : found.warnings)
+        warnings_.push_back(
+            ScenarioError{*use.place.file, use.place.line, use.place.column, use.key + ": " + warning}
+                .text());
+    }
+  }
+
+  void read_the_grading() {
+    if (!notes_.good({&s_.grading_file})) return;
+    try {
+      grading_ = read_grading(s_.grading_file);
+    } catch (const std::exception& error) {
+      fail(&s_.grading_file, std::string("grading: ") + error.what());
+    }
+  }
+
+  /// `load` describes the mass; `cure` says what to change beside the grading.
+  void spheres(double mass, const void* key, std::string_view path, const std::string& load,
+               std::string_view cure) {
+    if (!grading_ || !notes_.good({&s_.material.density})) return;
+    const double count = estimated_spheres(*grading_, mass, s_.material.density);
+    if (count > kMaxSpheres)
+      fail(key,
+           fmt::format(
+               "{}: about {:.1f} million spheres ({} of {}), more than the {:.0f} million allowed; {}, or "
+               "take a grading without its finest part",
+               path, count / 1e6, load, grading_->name(), kMaxSpheres / 1e6, cure));
+  }
+
+  void end_dump(const EndDump& e) {
+    if (notes_.good({&e.payload, &e.dumps}))
+      spheres(e.payload * e.dumps, &e.payload, "experiment.payload_t",
+              fmt::format("{} dumps of {} t", e.dumps, e.payload / 1000), "lower payload_t or dumps");
+    const Vec3& box = e.truck.load_box;
+    const bool box_good = notes_.good({&e.truck.load_box});
+    if (box_good && notes_.good({&e.payload, &s_.material.density})) {
+      const double rock = e.payload / s_.material.density;
+      if (rock > kDensestFill * box.prod())
+        fail(&e.truck.load_box,
+             fmt::format(
+                 "experiment.truck.load_box_m: too small for the payload: {:.3g} t are {:.3g} m3 of solid "
+                 "rock, "
+                 "the box of {:.3g} m3 holds at most {:.3g} m3 ({} of it); enlarge it or lower payload_t",
+                 e.payload / 1000, rock, box.prod(), kDensestFill * box.prod(), kDensestFill));
+    }
+    if (box_good) largest(box.minCoeff(), &e.truck.load_box, "experiment.truck.load_box_m");
+    if (box_good && notes_.good({&e.bench.width, &e.points})) {
+      const double reach = (e.bench.width - box.y()) / 2;
+      if (reach < 0) {
+        fail(&e.bench.width,
+             fmt::format("experiment.bench.width_m: {} m is narrower than the truck's load box ({} m)",
+                         e.bench.width, box.y()));
+        return;
+      }
+      for (std::size_t i = 0; i < e.points.size(); ++i) {
+        const void* place =
+            notes_.places.contains(&e.points[i]) ? &e.points[i] : static_cast<const void*>(&e.points);
+        if (std::abs(e.points[i]) > reach)
+          fail(place, fmt::format(
+                          "experiment.points_m[{}]: a load box {} m wide at {} m does not fit the bench {} m "
+                          "wide; allowed {} to {} m",
+                          i, box.y(), e.points[i], e.bench.width, -reach, reach));
+      }
+    }
+  }
+
+  void repose_lift(const ReposeLift& r) {
+    if (!notes_.good({&r.mass})) return;
+    spheres(r.mass, &r.mass, "experiment.mass_kg", fmt::format("{} kg", r.mass), "lower mass_kg");
+    if (!notes_.good({&r.diameter, &r.height})) return;
+    largest(r.diameter, &r.diameter, "experiment.container.diameter_m");
+    const double volume = std::numbers::pi / 4 * r.diameter * r.diameter * r.height;
+    const double rock = r.mass / s_.material.density;
+    if (notes_.good({&s_.material.density}) && rock > kDensestFill * volume)
+      fail(&r.mass,
+           fmt::format(
+               "experiment.mass_kg: {} kg are {:.3g} m3 of solid rock, the container of {:.3g} m3 holds "
+               "at most {:.3g} m3 ({} of it); lower mass_kg or enlarge the container",
+               r.mass, rock, volume, kDensestFill * volume, kDensestFill));
+  }
+
+  void largest(double room, const void* key, std::string_view path) {
+    if (grading_ && grading_->max_diameter() >= room)
+      fail(key, fmt::format("{}: {} m is not wider than the largest grain of {} ({} m)", path, room,
+                            grading_->name(), grading_->max_diameter()));
+  }
+
+  void tools() {
+    for (std::size_t i = 0; i < s_.tools.size(); ++i) {
+      const ToolSpec& tool = s_.tools[i];
+      for (std::size_t j = 0; j < i; ++j)
+        if (notes_.good({&tool.name}) && s_.tools[j].name == tool.name)
+          fail(&tool.name,
+               fmt::format("tools[{}].name: {} is the name of tools[{}] already", i, shown(tool.name), j));
+      for (std::size_t k = 1; k < tool.keyframes.size(); ++k) {
+        const Keyframe &before = tool.keyframes[k - 1], &frame = tool.keyframes[k];
+        if (notes_.good({&before.time, &frame.time}) && frame.time <= before.time)
+          fail(&frame.time,
+               fmt::format("tools[{}].keyframes[{}].time_s: {} s is not after the keyframe before ({} s)", i,
+                           k, frame.time, before.time));
+      }
+    }
+  }
+
+  void sections() {
+    const OutputSpec& o = s_.output;
+    if (!notes_.good({&o.sections, &o.further_sections})) return;
+    for (std::size_t i = 0; i < o.further_sections.size(); ++i) {
+      const auto end = o.further_sections.begin() + static_cast<std::ptrdiff_t>(i);
+      if (o.further_sections[i] == o.sections || std::find(o.further_sections.begin(), end, *end) != end)
+        fail(&o.further_sections[i],
+             fmt::format("output.further_sections[{}]: {} sections are analysed already", i, *end));
+    }
+  }
+
+  void compare() {
+    if (s_.compare.empty()) return;
+    const fs::path file = asset_dir_ / "reference" / "results.csv";
+    std::vector<std::string> known;
+    std::ifstream stream(file);
+    if (!stream) {
+      fail(&s_.compare, "compare: the reference results cannot be read: " + file.string());
+      return;
+    }
+    bool header = true;
+    for (std::string line; std::getline(stream, line);) {
+      if (line.empty() || line[0] == '#' || line[0] == '\r') continue;
+      std::string name = line.substr(0, line.find_first_of(",\r"));
+      if (!header && std::find(known.begin(), known.end(), name) == known.end())
+        known.push_back(std::move(name));
+      header = false;
+    }
+    for (std::size_t i = 0; i < s_.compare.size(); ++i)
+      if (std::find(known.begin(), known.end(), s_.compare[i]) == known.end())
+        fail(&s_.compare[i],
+             fmt::format("compare[{}]: no reference case {}{}; known: {}", i, shown(s_.compare[i]),
+                         suggestion(s_.compare[i], known), join(known)));
+  }
+
+  const Scenario& s_;
+  const fs::path& asset_dir_;
+  ReadNotes& notes_;
+  std::vector<std::string>& warnings_;
+  std::optional<Grading> grading_;
+};
+
+}  // namespace
+
+void check_scenario(const Scenario& scenario, const fs::path& asset_dir, ReadNotes& notes,
+                    std::vector<std::string>& warnings) {
+  Checks(scenario, asset_dir, notes, warnings).all();
+}
+
+}  // namespace scree

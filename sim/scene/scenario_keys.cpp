@@ -1,0 +1,219 @@
+#include "sim/scene/scenario_keys.h"
+
+namespace scree {
+namespace {
+
+constexpr Range kFriction{0, 5};
+constexpr Range kScale{1e-6, 1e6};
+constexpr Range kAnywhere{-1e4, 1e4};
+constexpr std::string_view kMetre = "m", kSecond = "s", kDegree = "degrees", kNone = "";
+
+template <class Enum>
+Choice choice(Enum& value, std::vector<std::string_view> names) {
+  return {std::move(names), [&value] { return static_cast<int>(value); },
+          [&value](int index) { value = static_cast<Enum>(index); }};
+}
+
+Choice base_layer(BaseLayer& value) {
+  return choice(value, {"none", "homogeneous", "mixed"});
+}
+
+constexpr std::string_view kScaleDoc = "Metres per unit of the mesh file; 0.001 for a mesh in millimetres.";
+constexpr std::string_view kMuDoc = "Sliding friction coefficient against rock; `rock`: the rock's own.";
+constexpr std::string_view kMuRDoc = "Rolling resistance coefficient against rock; `rock`: the rock's own.";
+
+Fields keys(Material& m) {
+  return {
+      {"density_kg_m3", Number{&m.density, "kg/m3", {100, 30000}}, "Density of the solid rock."},
+      {"mu", Number{&m.mu, kNone, kFriction}, "Sliding friction coefficient of rock on rock.", true},
+      {"mu_r", Number{&m.mu_r, kNone, kFriction}, "Rolling resistance coefficient of rock on rock.", true},
+      {"effective_modulus_pa", Number{&m.effective_modulus, "Pa", {1e3, 1e12}},
+       "Effective modulus of the contacts; it sets the normal stiffness and with it the time step."},
+      {"stiffness_ratio", Number{&m.stiffness_ratio, kNone, {0.1, 100}}, "Normal over shear stiffness."},
+      {"local_damping", Number{&m.local_damping, kNone, {0, 1, false, true}},
+       "Share of the unbalanced force that local damping takes away."},
+      {"damping_reach", choice(m.damping_reach, {"always", "contacts"}),
+       "Where local damping acts: always (in flight too), or only on grains in contact."},
+      {"normal_damping_ratio", Number{&m.normal_damping_ratio, kNone, {0, 2}},
+       "Normal dashpot, share of critical damping."},
+      {"shear_damping_ratio", Number{&m.shear_damping_ratio, kNone, {0, 2}},
+       "Shear dashpot, share of critical damping."},
+  };
+}
+
+Fields keys(BenchSpec& b) {
+  return {
+      {"height_m", Number{&b.height, kMetre, {0.1, 200}}, "Height of the bench."},
+      {"slope_deg", Number{&b.slope_deg, kDegree, {20, 80}},
+       "Slope of the bench face before the first dump."},
+      {"top_length_m", Number{&b.top_length, kMetre, {1, 1000}}, "Length of the bench top behind the crest."},
+      {"floor_length_m", Number{&b.floor_length, kMetre, {1, 1000}},
+       "Length of the floor in front of the toe."},
+      {"width_m", Number{&b.width, kMetre, {0.1, 1000}}, "Width of bench and floor along the crest."},
+      {"base_layer", base_layer(b.base_layer),
+       "Fixed balls on slope and floor: none, homogeneous (1 m), or mixed (0.5 m and 1 m)."},
+  };
+}
+
+Fields keys(TruckSpec& t) {
+  return {
+      {"bed_mesh", MeshFile{&t.bed_mesh, "meshes/truck_bed.stl", &t.scale},
+       "Mesh of the truck bed; origin at the middle of the discharge lip, bed along -x, z up."},
+      {"gate_mesh", MeshFile{&t.gate_mesh, "meshes/truck_gate.stl", &t.scale},
+       "Mesh of the tailgate, same frame."},
+      {"mesh_scale", Number{&t.scale, "m", kScale}, kScaleDoc},
+      {"load_box_m", Vector{&t.load_box, kMetre, {0.1, 50}}, "Inner length, width and height of the bed."},
+      {"tilt_deg", Number{&t.tilt_deg, kDegree, {0, 80}}, "Final tilt of the bed."},
+      {"drop_height_m", Number{&t.drop_height, kMetre, {0, 50}}, "Height of the lip above the crest."},
+      {"setback_m", Number{&t.setback, kMetre, {-20, 50}}, "Distance of the lip behind the crest."},
+      {"release", choice(t.release, {"open_gate", "hoist"}),
+       "open_gate: the tilted bed's gate opens at once; hoist: the bed tilts with the gate open."},
+      {"hoist_rate_deg_per_s", Number{&t.hoist_rate_deg, "degrees/s", {0.1, 90}},
+       "Speed of the tilt (hoist only)."},
+      {"settle_s", Number{&t.settle_s, kSecond, {0, 60}}, "Time the load settles behind the closed gate."},
+      {"mu", RockOr{&t.mu, kFriction}, kMuDoc},
+      {"mu_r", RockOr{&t.mu_r, kFriction}, kMuRDoc},
+  };
+}
+
+Fields keys(EndDump& e) {
+  return {
+      {"bench", Group{[&e] { return keys(e.bench); }}, "The bench the load is dumped over."},
+      {"truck", Group{[&e] { return keys(e.truck); }}, "The truck."},
+      {"dumps", Integer{&e.dumps, {1, 500}}, "Number of truck loads."},
+      {"payload_t", Number{&e.payload, "t", {0.001, 5000}, 1000}, "Mass of one load."},
+      {"points_m", Numbers{&e.points, kMetre, {-500, 500}, {1, 500}},
+       "Places along the crest where the truck dumps, visited in turn; 0 is the middle."},
+  };
+}
+
+Fields container_keys(ReposeLift& r) {
+  return {
+      {"mesh", MeshFile{&r.container_mesh, "meshes/bucket_repose.stl", &r.scale}, "Mesh of the container."},
+      {"mesh_scale", Number{&r.scale, "m", kScale}, kScaleDoc},
+      {"diameter_m", Number{&r.diameter, kMetre, {0.01, 50}}, "Inner diameter."},
+      {"height_m", Number{&r.height, kMetre, {0.01, 50}}, "Inner height."},
+      {"mu", RockOr{&r.container_mu, kFriction}, kMuDoc},
+      {"mu_r", RockOr{&r.container_mu_r, kFriction}, kMuRDoc},
+  };
+}
+
+Fields floor_keys(ReposeLift& r) {
+  return {
+      {"radius_m", Number{&r.floor_radius, kMetre, {0.01, 500}}, "Half width of the floor."},
+      {"mu", RockOr{&r.floor_mu, kFriction}, kMuDoc},
+      {"mu_r", RockOr{&r.floor_mu_r, kFriction}, kMuRDoc},
+      {"base_layer", base_layer(r.base_layer), "Fixed balls on the floor: none, homogeneous, or mixed."},
+  };
+}
+
+Fields keys(ReposeLift& r) {
+  return {
+      {"container", Group{[&r] { return container_keys(r); }}, "The container that is filled and lifted."},
+      {"mass_kg", Number{&r.mass, "kg", {0.001, 5e6}}, "Mass of the rock."},
+      {"lift_velocity_m_per_s", Number{&r.lift_velocity, "m/s", {1e-4, 10}}, "Speed of the lift."},
+      {"floor", Group{[&r] { return floor_keys(r); }}, "The floor the rock comes to rest on."},
+  };
+}
+
+Fields keys(Keyframe& k) {
+  return {
+      {"time_s", Number{&k.time, kSecond, {0, 1e5}},
+       "Time since the start of the clock; rising along the list.", true},
+      {"position_m", Vector{&k.position, kMetre, kAnywhere}, "Place of the mesh's origin: x, y, z."},
+      {"rotation_deg", Vector{&k.rotation_deg, kDegree, {-36000, 36000}},
+       "Rotations about the fixed axes x, y, z, in this order."},
+  };
+}
+
+Fields keys(ToolSpec& t) {
+  return {
+      {"name", Text{&t.name, {1, 100}}, "Name of the tool, of its own.", true},
+      {"mesh", MeshFile{&t.mesh, "", &t.scale}, "Mesh of the tool: STL, OBJ, PLY, glTF or GLB.", true},
+      {"mesh_scale", Number{&t.scale, "m", kScale}, kScaleDoc},
+      {"mu", RockOr{&t.mu, kFriction}, kMuDoc},
+      {"mu_r", RockOr{&t.mu_r, kFriction}, kMuRDoc},
+      {"keyframes",
+       GroupList{[&t](std::size_t n) { t.keyframes.assign(n, {}); },
+                 [&t] { return t.keyframes.size(); },
+                 [&t](std::size_t i) { return keys(t.keyframes[i]); },
+                 {1, 4000}},
+       "Poses of the tool in time; it moves straight from one to the next.", true},
+  };
+}
+
+Fields keys(StopRule& s) {
+  return {
+      {"speed_m_per_s", Number{&s.speed, "m/s", {1e-6, 10}}, "A grain faster than this is moving."},
+      {"moving_mass_share", Number{&s.moving_mass_share, kNone, {0, 1, true, true}},
+       "The load is at rest when less than this share of its mass is moving."},
+      {"min_time_s", Number{&s.min_time, kSecond, {0, 1e5}}, "Least time after the release."},
+      {"max_time_s", Number{&s.max_time, kSecond, {0, 1e5, true, false}},
+       "Most time after the release; reaching it is reported."},
+  };
+}
+
+Fields keys(Numerics& n) {
+  return {
+      {"time_step_safety", Number{&n.time_step_safety, kNone, {0, 1, true, false}},
+       "Share of the stable time step that is taken (engine rrlinear)."},
+      {"impulse_time_step_s", Number{&n.impulse_time_step, kSecond, {1e-6, 0.1}},
+       "Time step of the engine impulse."},
+      {"impulse_iterations", Integer{&n.impulse_iterations, {1, 1000}},
+       "Solver iterations of the engine impulse."},
+  };
+}
+
+Fields keys(OutputSpec& o) {
+  return {
+      {"frame_interval_s", Number{&o.frame_interval, kSecond, {0, 1e5}},
+       "Simulated time between frames of the trajectory; 0: only the last."},
+      {"sections", Integer{&o.sections, {1, 100}},
+       "Number of sections the pile is cut into for its gradings."},
+      {"further_sections", Integers{&o.further_sections, {1, 100}, {0, 20}},
+       "Other numbers of sections to analyse beside."},
+      {"trajectory", Boolean{&o.trajectory}, "Whether the trajectory is written."},
+  };
+}
+
+OneOf experiment(Scenario& s) {
+  return {
+      {"end_dump", "repose_lift"},
+      "end_dump: truck loads over the crest of a bench; repose_lift: a container filled with rock is lifted.",
+      [&s] { return static_cast<int>(s.experiment.index()); },
+      [&s](int index) {
+        if (index == 0) s.experiment.emplace<EndDump>();
+        if (index == 1) s.experiment.emplace<ReposeLift>();
+      },
+      [&s] { return std::visit([](auto& chosen) { return keys(chosen); }, s.experiment); }};
+}
+
+}  // namespace
+
+Fields scenario_keys(Scenario& s) {
+  return {
+      {"extends", Extends{},
+       "Another scenario file, relative to this one, whose keys hold where this one does not give them."},
+      {"title", Text{&s.title, {0, 200}}, "Title for reports."},
+      {"engine", choice(s.engine, {"rrlinear", "impulse"}),
+       "rrlinear: soft contacts with rolling resistance; impulse: rigid contacts, faster and coarser."},
+      {"seeds", Seeds{&s.seeds, {1, 1000}}, "Seeds of the random streams, one run each; distinct."},
+      {"material", Group{[&s] { return keys(s.material); }}, "The rock and the contact law."},
+      {"grading", GradingFile{&s.grading_file}, "Name of a grading in assets/gradings, or path of a CSV.",
+       true},
+      {"experiment", experiment(s), "What is done with the rock.", true},
+      {"tools",
+       GroupList{[&s](std::size_t n) { s.tools.assign(n, {}); },
+                 [&s] { return s.tools.size(); },
+                 [&s](std::size_t i) { return keys(s.tools[i]); },
+                 {0, 50}},
+       "Meshes in the scene, fixed or moved by keyframes."},
+      {"stop", Group{[&s] { return keys(s.stop); }}, "When a load has come to rest."},
+      {"numerics", Group{[&s] { return keys(s.numerics); }}, "Time steps and iterations."},
+      {"output", Group{[&s] { return keys(s.output); }}, "What is written and analysed."},
+      {"compare", Texts{&s.compare, {0, 100}},
+       "Cases in assets/reference/results.csv the result is held against."},
+  };
+}
+
+}  // namespace scree

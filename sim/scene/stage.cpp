@@ -1,0 +1,154 @@
+#include "sim/scene/stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace scree {
+namespace {
+
+constexpr double kTick = 0.1;  // s of simulated time between looks at progress and rest
+
+}  // namespace
+
+Stage::Stage(const Scenario& scenario, std::uint64_t seed, int threads, const RunHooks& hooks,
+             const Vec3& domain_low, const Vec3& domain_high)
+    : scenario_(scenario), seed_(seed), hooks_(hooks) {
+  WorldSettings settings;
+  settings.material = scenario.material;
+  settings.domain_low = domain_low;
+  settings.domain_high = domain_high;
+  settings.time_step_safety = scenario.numerics.time_step_safety;
+  settings.impulse_time_step = scenario.numerics.impulse_time_step;
+  settings.impulse_iterations = scenario.numerics.impulse_iterations;
+  settings.threads = threads;
+  world_ =
+      scenario.engine == EngineKind::rrlinear ? make_rrlinear_world(settings) : make_impulse_world(settings);
+}
+
+Surface Stage::surface(const std::optional<double>& mu, const std::optional<double>& mu_r) const {
+  return {mu.value_or(scenario_.material.mu), mu_r.value_or(scenario_.material.mu_r)};
+}
+
+TriangleMesh Stage::read(const std::filesystem::path& mesh, double scale) const {
+  LoadedMesh loaded = load_mesh(mesh, scale);
+  if (!loaded.report.errors.empty()) throw std::runtime_error(loaded.report.errors.front());
+  return std::move(loaded.mesh);
+}
+
+void Stage::add_tools() {
+  for (const ToolSpec& tool : scenario_.tools) {
+    std::vector<Motion::Key> keys;
+    for (const Keyframe& k : tool.keyframes) {
+      const Vec3 r = k.rotation_deg * (std::numbers::pi / 180.0);
+      Pose pose;
+      pose.position = k.position;
+      pose.rotation = Eigen::AngleAxisd(r.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(r.y(), Vec3::UnitY()) *
+                      Eigen::AngleAxisd(r.x(), Vec3::UnitX());
+      keys.push_back({k.time, pose});
+    }
+    world_->add_mesh(read(tool.mesh, tool.scale), surface(tool.mu, tool.mu_r), Motion(std::move(keys)));
+  }
+}
+
+void Stage::begin(const std::vector<NewSphere>& fixed, const std::vector<std::vector<NewSphere>>& loads) {
+  loads_ = loads;
+  world_->add_spheres(fixed);
+  outcome_.fixed_balls = static_cast<std::int64_t>(fixed.size());
+  auto id = static_cast<std::int64_t>(fixed.size());
+  for (const auto& load : loads_)
+    for (const NewSphere& s : load) {
+      const double mass = scenario_.material.density * std::numbers::pi / 6.0 * std::pow(s.diameter, 3);
+      outcome_.original.push_back({id++, s.position, Vec3::Zero(), s.diameter, mass, s.dump});
+    }
+  if (hooks_.begin) hooks_.begin(outcome_.original, world_->fixed_balls());
+}
+
+void Stage::add_load() {
+  const auto& load = loads_.at(next_load_++);
+  load_mass_ = 0;
+  for (const NewSphere& s : load)
+    load_mass_ += scenario_.material.density * std::numbers::pi / 6.0 * std::pow(s.diameter, 3);
+  progress_.particles += static_cast<std::int64_t>(load.size());
+  world_->add_spheres(load);
+}
+
+bool Stage::tick(double until, const char* stage, double share) {
+  const double interval = scenario_.output.frame_interval;
+  if (interval > 0 && hooks_.frame && world_->time() >= next_frame_ - 1e-9) {
+    hooks_.frame(world_->snapshot(), world_->statistics().steps);
+    next_frame_ += interval;
+  }
+  world_->advance_to(until);
+  progress_.share = share;
+  progress_.time = world_->time();
+  progress_.stage = stage;
+  progress_.particle_steps = world_->statistics().particle_steps;
+  if (hooks_.progress && !hooks_.progress(progress_)) {
+    outcome_.interrupted = true;
+    return false;
+  }
+  return true;
+}
+
+bool Stage::advance(double seconds, const char* stage, double share_now, double share_then) {
+  const double start = world_->time(), end = start + seconds;
+  while (world_->time() < end - 1e-9) {
+    const double until = std::min(end, world_->time() + kTick);
+    if (!tick(until, stage, share_now + (share_then - share_now) * (until - start) / seconds)) return false;
+  }
+  return true;
+}
+
+bool Stage::advance_to_rest(const char* stage, double share_now, double share_then) {
+  const StopRule& stop = scenario_.stop;
+  const double start = world_->time();
+  while (true) {
+    const double passed = world_->time() - start;
+    double mass = 0;
+    for (int i = 0; i < world_->spheres().movable; ++i)
+      if (!world_->spheres().lost[i]) mass += world_->spheres().velocity[i].w;
+    // The share is of the load's mass, so that a growing pile does not hide that a load still moves.
+    progress_.moving_share = load_mass_ > 0 ? world_->moving_mass_share(stop.speed) * mass / load_mass_ : 0;
+    if (passed >= stop.min_time && progress_.moving_share < stop.moving_mass_share) return true;
+    if (passed >= stop.max_time) {
+      outcome_.at_rest = false;
+      outcome_.notes.push_back(
+          fmt::format("seed {}: {:.1f} % of the load still moved faster than {} m/s when stop.max_time_s = "
+                      "{} s was reached",
+                      seed_, 100 * progress_.moving_share, stop.speed, stop.max_time));
+      return true;
+    }
+    // A load needs some 12 s; beyond that the estimate only creeps.
+    const double share = share_now + (share_then - share_now) * (1.0 - std::exp(-passed / 6.0));
+    if (!tick(world_->time() + kTick, stage, share)) return false;
+  }
+}
+
+RunOutcome Stage::finish() {
+  outcome_.final_state = world_->snapshot();
+  if (hooks_.frame) hooks_.frame(outcome_.final_state, world_->statistics().steps);
+  outcome_.statistics = world_->statistics();
+  outcome_.simulated_seconds = world_->time();
+  return std::move(outcome_);
+}
+
+RunOutcome run_scenario(const Scenario& scenario, std::uint64_t seed, int threads, const RunHooks& hooks) {
+  const auto start = std::chrono::steady_clock::now();
+  RunOutcome outcome = std::visit(
+      [&](const auto& experiment) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(experiment)>, EndDump>)
+          return run_end_dump(scenario, experiment, seed, threads, hooks);
+        else
+          return run_repose_lift(scenario, experiment, seed, threads, hooks);
+      },
+      scenario.experiment);
+  outcome.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return outcome;
+}
+
+}  // namespace scree

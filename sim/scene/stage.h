@@ -1,0 +1,60 @@
+#pragma once
+// What all experiments share: a world, time that goes on with frames and progress, and rest.
+#include <memory>
+
+#include "sim/scene/run.h"
+
+namespace scree {
+
+class Stage {
+ public:
+  Stage(const Scenario& scenario, std::uint64_t seed, int threads, const RunHooks& hooks, const Vec3& domain_low,
+        const Vec3& domain_high);
+
+  RockWorld& world() { return *world_; }
+  const Scenario& scenario() const { return scenario_; }
+  std::uint64_t seed() const { return seed_; }
+
+  /// Surface of a tool: its own friction where given, the rock's otherwise.
+  Surface surface(const std::optional<double>& mu, const std::optional<double>& mu_r) const;
+  /// Reads a mesh that the scenario check has passed already; throws std::runtime_error if it is bad now.
+  TriangleMesh read(const std::filesystem::path& mesh, double scale) const;
+  /// Puts the user's own tools into the scene.
+  void add_tools();
+
+  /// Tells the hooks what will come. `loads` holds every grain in order of dumping; ids follow the fixed balls.
+  void begin(const std::vector<NewSphere>& fixed, const std::vector<std::vector<NewSphere>>& loads);
+  /// Adds the next load.
+  void add_load();
+
+  /// Advances by `seconds`; false when the user ended the run. `share_now`, `share_then`: of the whole run, for progress.
+  bool advance(double seconds, const char* stage, double share_now, double share_then);
+  /// Advances until the load has come to rest (stop rule) or max_time has passed, which is noted.
+  bool advance_to_rest(const char* stage, double share_now, double share_then);
+
+  void set_dump(int dump, int dumps) { progress_.dump = dump, progress_.dumps = dumps; }
+  bool interrupted() const { return outcome_.interrupted; }
+  RunOutcome finish();
+
+ private:
+  bool tick(double until, const char* stage, double share);
+
+  const Scenario& scenario_;
+  std::uint64_t seed_;
+  const RunHooks& hooks_;
+  std::unique_ptr<RockWorld> world_;
+  RunOutcome outcome_;
+  RunProgress progress_;
+  std::vector<std::vector<NewSphere>> loads_;
+  std::size_t next_load_ = 0;
+  double load_mass_ = 0;
+  double next_frame_ = 0;
+};
+
+/// The experiments; each runs a stage from its beginning to its end.
+RunOutcome run_end_dump(const Scenario& scenario, const EndDump& experiment, std::uint64_t seed, int threads,
+                        const RunHooks& hooks);
+RunOutcome run_repose_lift(const Scenario& scenario, const ReposeLift& experiment, std::uint64_t seed, int threads,
+                           const RunHooks& hooks);
+
+}  // namespace scree

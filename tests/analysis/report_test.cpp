@@ -1,0 +1,164 @@
+#include "analysis/report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "analysis/report_text.h"
+#include "tests/analysis/fake_run.h"
+
+namespace scree {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+std::filesystem::path fresh_folder(const std::string& name) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / ("scree_report_" + name);
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// PATH with one folder only, until the end of the test.
+class OnlyPath {
+ public:
+  explicit OnlyPath(const std::filesystem::path& folder) : before_(std::getenv("PATH")) {
+    setenv("PATH", folder.c_str(), 1);
+  }
+  ~OnlyPath() { setenv("PATH", before_.c_str(), 1); }
+  OnlyPath(const OnlyPath&) = delete;
+  OnlyPath& operator=(const OnlyPath&) = delete;
+
+ private:
+  std::string before_;
+};
+
+TEST(Report, ShowsTheWholeRunOnOnePage) {
+  const auto folder = fresh_folder("whole");
+  write_report(fake_run(), folder, {45.0});
+  const std::string page = text_of(folder / "report.html");
+
+  EXPECT_THAT(page, HasSubstr("Rock at the toe is coarser than at the crest"));
+  EXPECT_THAT(page, HasSubstr("Of 6 printed values, 5 agree"));
+  for (const char* value : {"−1.04", "0.260", "−0.770", "0.560", "0.380", "1.90"})
+    EXPECT_THAT(page, HasSubstr(value));
+  EXPECT_THAT(page, HasSubstr("does not agree"));
+  EXPECT_THAT(page, HasSubstr("not judged"));
+  EXPECT_THAT(page, HasSubstr("(0.3 % &amp; 3 grains)"));
+  EXPECT_THAT(page, Not(HasSubstr("<script")));
+  EXPECT_THAT(page, HasSubstr("&lt;script&gt;alert(&#39;x&#39;)"));
+  EXPECT_THAT(page, Not(HasSubstr("src=\"http"))) << "nothing comes from the network";
+
+  for (const char* name :
+       {"pile_cut.png", "pile_front.png", "chi.svg", "diameters.svg", "passing.svg", "profile.svg"})
+    EXPECT_GT(std::filesystem::file_size(folder / "pictures" / name), 4000U) << name;
+  EXPECT_EQ(text_of(folder / "pictures" / "pile_cut.png").substr(1, 3), "PNG");
+}
+
+TEST(Report, ShowsAReposeTest) {
+  const auto folder = fresh_folder("repose");
+  RunResult run;
+  run.title = "Repose angle of the laboratory rock";
+  run.seeds = {fake_seed(10001)};
+  SeedResult& seed = run.seeds[0];
+  seed.sections.clear();
+  seed.profile.clear();
+  seed.slope_angle.reset();
+  std::vector<Grain> heap;
+  for (Grain& grain : seed.final_state.grains) {  // a cone of 37 degrees, 1.5 m wide
+    grain.diameter *= 0.08;
+    const double up = grain.position.z() / 10, around = grain.position.y() * 20;
+    const double out = 0.72 * (1 - up) * std::sqrt(std::fmod(grain.position.x() * 7.3, 1.0));
+    grain.position = Vec3(out * std::cos(around), out * std::sin(around), 0.54 * up);
+    if (grain.position.z() > grain.diameter / 2) heap.push_back(grain);
+  }
+  seed.final_state.grains = heap;
+  seed.repose = ReposeAngle{};
+  seed.repose->angle = 36.9;
+  seed.repose->half_coverage = 38.2;
+  seed.repose->slope_fit = 35.1;
+  seed.repose->height = 0.54;
+  seed.repose->radius = 0.72;
+  Comparison row = fake_comparison("angle", "whole", "pfc3d", 34.9, 3.1, 36.9, 0.65);
+  row.reference.unit = "deg";
+  row.reference.case_name = "lab_repose";
+  run.comparison = {row};
+  write_report(run, folder);
+  const std::string page = text_of(folder / "report.html");
+  EXPECT_THAT(page, HasSubstr("The heap stands at a repose angle of 36.9°"));
+  EXPECT_THAT(page, HasSubstr("34.9°"));
+  EXPECT_GT(std::filesystem::file_size(folder / "pictures" / "heap_cut.png"), 4000U);
+  EXPECT_GT(std::filesystem::file_size(folder / "pictures" / "repose.svg"), 4000U);
+}
+
+TEST(Report, NamesThePackageWhenGnuplotIsMissing) {
+  const auto folder = fresh_folder("missing");
+  const OnlyPath empty(folder);
+  try {
+    write_report(fake_run(), folder);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("apt install gnuplot-nox"));
+  }
+}
+
+TEST(Report, GivesGnuplotsOwnWordsWhenItFails) {
+  const auto folder = fresh_folder("fails");
+  std::ofstream(folder / "gnuplot") << "#!/bin/sh\necho 'no such terminal' >&2\nexit 3\n";
+  std::filesystem::permissions(folder / "gnuplot", std::filesystem::perms::owner_all);
+  const OnlyPath fake(folder);
+  try {
+    run_gnuplot("plot 1", folder / "x.svg");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("x.svg (exit status 3): no such terminal"));
+  }
+}
+
+TEST(Report, NothingInALabelIsExpanded) {
+  EXPECT_EQ(gnuplot_quoted("it's `rm` $x\n"), "'it''s `rm` $x '");
+  const auto folder = fresh_folder("label");
+  run_gnuplot("set terminal svg noenhanced\nset title " +
+                  gnuplot_quoted("`touch " + (folder / "made").string() + "`") + "\nplot x",
+              folder / "x.svg");
+  EXPECT_FALSE(std::filesystem::exists(folder / "made"));
+}
+
+TEST(ReportText, WritesNumbersForReaders) {
+  EXPECT_EQ(number_text(0.12345), "0.123");
+  EXPECT_EQ(number_text(-1.04), "−1.04");
+  EXPECT_EQ(number_text(1234.5), "1234");  // digits before the point are never dropped
+  EXPECT_EQ(number_text(0), "0.00");
+  EXPECT_EQ(decimals_text(-0.001, 2), "0.00");
+  EXPECT_EQ(number_text(std::nan("")), "–");
+  EXPECT_EQ(count_text(12345678), "12\u202f345\u202f678");
+  EXPECT_EQ(count_text(123), "123");
+  EXPECT_EQ(duration_text(845), "14.1 min");
+  EXPECT_EQ(base64("Man"), "TWFu");  // RFC 4648
+  EXPECT_EQ(base64("Ma"), "TWE=");
+  EXPECT_EQ(quantity_in_words("d50_rel"), "D50 / D50 as dumped");
+  EXPECT_EQ(quantity_in_words("d95"), "D95");
+}
+
+TEST(ReportText, JudgesByTheDeviation) {
+  const auto of = [](std::optional<double> z) {
+    return verdict(fake_comparison("chi", "S1", "measured", 0, 1, 0, z));
+  };
+  EXPECT_EQ(of(-0.9), Verdict::close);
+  EXPECT_EQ(of(-1.9), Verdict::agrees);
+  EXPECT_EQ(of(2.0), Verdict::differs);
+  EXPECT_EQ(of(std::nullopt), Verdict::unknown);
+}
+
+}  // namespace
+}  // namespace scree

@@ -1,0 +1,177 @@
+// Printed values, and runs held against them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+
+#include "analysis/results.h"
+#include "scree_version.h"
+
+namespace scree {
+namespace {
+
+std::vector<ReferenceValue> stored() {
+  return read_reference(std::filesystem::path(SCREE_SOURCE_DIR) / "assets/reference/results.csv");
+}
+
+const ReferenceValue* find(const std::vector<ReferenceValue>& rows, const std::string& name,
+                           const std::string& quantity, const std::string& section, const std::string& kind) {
+  for (const auto& row : rows)
+    if (row.case_name == name && row.quantity == quantity && row.section == section && row.kind == kind &&
+        row.relation != "min" && row.relation != "max")
+      return &row;
+  return nullptr;
+}
+
+/// A seed with a table of n sections whose chi is 0, 0.1, 0.2 ... plus `shift`.
+SeedResult seed_with_sections(std::vector<int> counts, double shift = 0) {
+  SeedResult seed;
+  for (const int n : counts) {
+    SectionTable table;
+    table.sieves = {0.5, 1.0};
+    table.original_passing = {0.1, 0.4};
+    for (int k = 0; k < n; ++k) {
+      Section section;
+      section.name = std::string("S").append(std::to_string(k + 1));
+      section.chi = 0.1 * k + shift;
+      section.d50 = 1 + k;
+      section.d50_rel = 2 + k;
+      section.mass = 1000.0 * (k + 1);
+      section.passing = {0, 0.5};
+      table.sections.push_back(section);
+    }
+    seed.sections.push_back(table);
+  }
+  return seed;
+}
+
+TEST(MeanStd, LeavesNaNOut) {
+  const double nan = std::nan("");
+  const MeanStd three = mean_std({1, nan, 2, 3});
+  EXPECT_EQ(three.n, 3);
+  EXPECT_DOUBLE_EQ(three.mean, 2);
+  EXPECT_DOUBLE_EQ(three.std, 1);  // sqrt((1 + 0 + 1) / (3 - 1))
+  EXPECT_TRUE(std::isnan(mean_std({5}).std));
+  EXPECT_TRUE(std::isnan(mean_std({nan}).mean));
+  EXPECT_EQ(mean_std({}).n, 0);
+}
+
+TEST(Reference, StoredFileHoldsThePrintedValues) {
+  const auto rows = stored();
+  const auto* chi = find(rows, "A1", "chi", "S1", "pfc3d");
+  ASSERT_TRUE(chi);
+  EXPECT_DOUBLE_EQ(chi->value, -1.04);
+  EXPECT_DOUBLE_EQ(chi->std.value(), 0.33);
+  const auto* angle = find(rows, "lab_repose_0.2_0.2", "angle", "whole", "pfc3d");
+  ASSERT_TRUE(angle);
+  EXPECT_DOUBLE_EQ(angle->value, 25.25);
+  EXPECT_EQ(angle->unit, "deg");
+  const auto* measured = find(rows, "lab_repose_0.2_0.2", "angle", "whole", "measured");
+  ASSERT_TRUE(measured);
+  EXPECT_DOUBLE_EQ(measured->value, 25.4);
+  EXPECT_DOUBLE_EQ(find(rows, "lab_segregation", "d50", "bottom", "measured")->value, 0.059);  // 59 mm
+  int pairs = 0;
+  for (const auto& row : rows) pairs += row.case_name.starts_with("lab_repose_") && row.kind == "pfc3d";
+  EXPECT_EQ(pairs, 16);
+  for (const char* section : {"S1", "S2", "S3", "S4", "S5", "S6"})
+    for (const char* quantity : {"chi", "d10_rel", "d50_rel", "d80_rel", "d90_rel", "d95_rel"})
+      EXPECT_TRUE(find(rows, "cm_field_6sec", quantity, section, "measured")) << section << ' ' << quantity;
+}
+
+TEST(Reference, EachValueStandsOnce) {
+  std::map<std::string, int> seen;
+  for (const auto& row : stored())
+    EXPECT_EQ(++seen[row.case_name + row.quantity + row.section + row.kind + row.relation], 1)
+        << row.case_name << ' ' << row.quantity << ' ' << row.section;
+}
+
+TEST(Reference, MalformedLineIsNamed) {
+  const auto file = std::filesystem::path(testing::TempDir()) / "scree_bad_reference.csv";
+  const std::string header = "case,quantity,section,kind,value,std,unit,relation,source\n";
+  const std::map<std::string, std::string> bad{
+      {"", ":1: "},
+      {"a,b\n", ":1: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,x\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1\nA1,chi,S1,pfc3d,one,,-,eq,C.1\n", ":3: "},
+      {header + "A1,chi,S1,pfc3d,,,-,eq,C.1\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,-0.1,-,eq,C.1\n", ":2: "},
+      {header + "A1,chi,S1,guess,1,,-,eq,C.1\n", ":2: "},
+      {header + "A1,d50,S1,pfc3d,1,,mm,eq,C.1\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,equals,C.1\n", ":2: "},
+      {header + ",chi,S1,pfc3d,1,,-,eq,C.1\n", ":2: "},
+  };
+  for (const auto& [text, place] : bad) {
+    std::ofstream(file) << text;
+    try {
+      read_reference(file);
+      ADD_FAILURE() << "accepted: " << text;
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("scree_bad_reference.csv" + place)) << text;
+    }
+  }
+  std::filesystem::remove(file);
+  EXPECT_THROW(read_reference(file), std::runtime_error);
+}
+
+TEST(Compare, TakesTheTableWithTheCasesNumberOfSections) {
+  const auto rows = stored();
+  const std::vector<SeedResult> seeds{seed_with_sections({6, 3, 5})};
+  const auto three = compare_with_reference(seeds, rows, {"cm_field_3sec"});
+  ASSERT_FALSE(three.empty());
+  for (const auto& row : three)
+    if (row.reference.section == "bottom" && row.reference.quantity == "chi") {
+      EXPECT_DOUBLE_EQ(row.simulated, 0.2);
+    }
+  const auto six = compare_with_reference(seeds, rows, {"A1"});
+  std::map<std::string, double> simulated;
+  for (const auto& row : six) simulated[row.reference.quantity + row.reference.section] = row.simulated;
+  EXPECT_DOUBLE_EQ(simulated.at("chiS6"), 0.5);
+  EXPECT_DOUBLE_EQ(simulated.at("mass_tS6"), 6);                // 6000 kg
+  EXPECT_DOUBLE_EQ(simulated.at("share_above_1mS6"), 6. / 21);  // half of 6 t, over half of 1 + 2 + ... + 6 t
+  EXPECT_DOUBLE_EQ(simulated.at("share_above_1m_origwhole"), 0.6);
+  // qb_field_5sec reads the table of 5: D50 of S5 is 5 m in it.
+  for (const auto& row : compare_with_reference(seeds, rows, {"qb_field_5sec"}))
+    if (row.reference.section == "S5" && row.reference.quantity == "d50") {
+      EXPECT_DOUBLE_EQ(row.simulated, 5);
+    }
+}
+
+TEST(Compare, SkipsWhatTheRunDoesNotHaveAndBounds) {
+  const auto rows = stored();
+  EXPECT_TRUE(compare_with_reference({seed_with_sections({6})}, rows, {"cm_field_3sec"}).empty());
+  EXPECT_TRUE(compare_with_reference({seed_with_sections({6})}, rows, {"lab_repose_0.2_0.2"}).empty());
+  for (const auto& row : compare_with_reference({seed_with_sections({6})}, rows, {"cm_field_6sec"}))
+    EXPECT_THAT(row.reference.relation, testing::AnyOf("eq", "approx", "mean", "derived"));
+  EXPECT_THROW(compare_with_reference({}, rows, {"no_such_case"}), std::invalid_argument);
+}
+
+TEST(Compare, ZOfDeviationsOfBothSides) {
+  ReferenceValue row{"case", "chi", "S1", "pfc3d", 0.5, 0.3, "-", "eq", "T"};
+  const std::vector<SeedResult> seeds{seed_with_sections({6}, -0.4), seed_with_sections({6}, 0.4)};
+  // mean 0, deviation sqrt(0.32) = 0.566 (n - 1); z = -0.5 / sqrt(0.09 + 0.32)
+  auto compared = compare_with_reference(seeds, {row}, {"case"});
+  ASSERT_EQ(compared.size(), 1u);
+  EXPECT_NEAR(compared[0].simulated_std.value(), std::sqrt(0.32), 1e-12);
+  EXPECT_NEAR(compared[0].z.value(), -0.5 / std::sqrt(0.41), 1e-12);
+  row.std.reset();
+  compared = compare_with_reference({seeds[0]}, {row}, {"case"});
+  EXPECT_FALSE(compared[0].simulated_std.has_value());
+  EXPECT_FALSE(compared[0].z.has_value());
+}
+
+TEST(Compare, AnglesOfReposeAndSlope) {
+  SeedResult seed;
+  seed.repose.emplace();
+  seed.repose->angle = 26;
+  const auto repose = compare_with_reference({seed}, stored(), {"lab_repose_0.2_0.2"});
+  ASSERT_EQ(repose.size(), 2u);  // simulated and measured
+  EXPECT_DOUBLE_EQ(repose[0].simulated, 26);
+  seed.slope_angle = 25;
+  EXPECT_EQ(compare_with_reference({seed}, stored(), {"lab_segregation"}).size(), 2u);
+}
+
+}  // namespace
+}  // namespace scree
