@@ -48,16 +48,6 @@ SizeRange size_range(const std::vector<Grain>& grains) {
   return range;
 }
 
-/// Ticks at 1, 2, 5 times powers of ten.
-std::string colour_ticks(const SizeRange& range) {
-  std::string ticks;
-  for (double decade = std::pow(10.0, std::floor(std::log10(range.low))); decade <= range.high; decade *= 10)
-    for (const double step : {1.0, 2.0, 5.0})
-      if (const double size = decade * step; size >= range.low * 0.999 && size <= range.high * 1.001)
-        ticks += fmt::format("{}'{:.3g}' {:.6g}", ticks.empty() ? "" : ", ", size, size);
-  return ticks;
-}
-
 std::string palette() {
   std::string out = "set palette defined (";
   for (std::size_t i = 0; i < kViridis.size(); ++i)
@@ -94,14 +84,14 @@ std::string script(const View& view, const SizeRange& range) {
                      1 - above / height);
   out += fmt::format("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\n", view.frame.left,
                      view.frame.right, view.frame.low, view.frame.high);
-  out += "set border 3 lc rgb '#777777'\nset tics nomirror out scale 0.6 tc rgb '#333333'\n";
+  out += "set minussign\nset border 3 lc rgb '#777777'\nset tics nomirror out scale 0.6 tc rgb '#333333'\n";
   out += fmt::format("set xlabel {}\nset ylabel {}\nset title {} offset 0,-0.3\n",
                      gnuplot_quoted(view.across_label), gnuplot_quoted(view.up_label),
                      gnuplot_quoted(view.title));
   out += palette() + "set logscale cb\n";
   out += fmt::format(
       "set cbrange [{:.6g}:{:.6g}]\nset cbtics ({}) scale 0.4\nset cblabel 'grain diameter (m)'\n", range.low,
-      range.high, colour_ticks(range));
+      range.high, log_ticks(range.low, range.high));
   out +=
       fmt::format("set colorbox user origin screen {:.5f}, screen {:.5f} size screen {:.5f}, screen {:.5f}\n",
                   1 - (right - 60) / width, below / height, 36 / width, 1 - (below + above) / height);
@@ -192,7 +182,7 @@ std::string bench_lines(const RunResult& result, const SceneFacts& scene, const 
 
 /// The straight flanks that the reading of the repose angle stands for.
 std::string cone_lines(const ReposeAngle& repose, double centre) {
-  const char* look = "front lw 1 dt 2 lc rgb '#d55e00'";
+  const char* look = "front lw 1.5 dt 2 lc rgb '#d55e00'";
   return line(centre - repose.radius, 0, centre, repose.height, look) +
          line(centre, repose.height, centre + repose.radius, 0, look);
 }
@@ -233,6 +223,15 @@ View toe_view(const RunResult& result, const SeedResult& seed) {
 }
 
 }  // namespace
+
+std::string log_ticks(double low, double high) {
+  std::string ticks;
+  for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high; decade *= 10)
+    for (const double step : {1.0, 2.0, 5.0})
+      if (const double size = decade * step; size >= low * 0.999 && size <= high * 1.001)
+        ticks += fmt::format("{}'{:.3g}' {:.6g}", ticks.empty() ? "" : ", ", size, size);
+  return ticks;
+}
 
 unsigned viridis(double share) {
   const double at = std::clamp(share, 0.0, 1.0) * (kViridis.size() - 1);

@@ -41,6 +41,9 @@ void run_gnuplot(const std::string& script, const std::filesystem::path& output)
 /// Text as a gnuplot string in which nothing is expanded.
 std::string gnuplot_quoted(std::string_view text);
 
+/// Ticks of a logarithmic axis at 1, 2, 5 times powers of ten, as gnuplot lists them.
+std::string log_ticks(double low, double high);
+
 /// Colour of viridis (van der Walt and Smith, 2015) at a share from 0 (dark blue) to 1 (yellow), 0xRRGGBB.
 unsigned viridis(double share);
 

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <optional>
+#include <string_view>
 
 #include "analysis/report_text.h"
 #include "analysis/summary.h"
@@ -88,10 +90,19 @@ std::string with_unit(const std::string& number, const std::string& unit) {
   return fmt::format("{} {}", number, unit == "pct" ? "%" : html_escaped(unit));
 }
 
-/// A value with its deviation below it.
-std::string value_cell(double value, std::optional<double> std, const std::string& unit) {
-  std::string out = with_unit(number_text(value), unit);
-  if (std && std::isfinite(*std)) out += fmt::format("<small>± {}</small>", number_text(*std, 2));
+/// Degrees of segregation have two decimals and angles one, so that a column lines up; sizes have three
+/// digits.
+int decimals_for(std::string_view quantity, double value) {
+  if (quantity.starts_with("chi")) return 2;
+  return quantity.ends_with("angle") ? 1 : decimals_of(value);
+}
+
+/// A value with its deviation below it, both with the same decimals.
+std::string value_cell(std::string_view quantity, double value, std::optional<double> std,
+                       const std::string& unit) {
+  const int decimals = decimals_for(quantity, value);
+  std::string out = with_unit(decimals_text(value, decimals), unit);
+  if (std && std::isfinite(*std)) out += fmt::format("<small>± {}</small>", decimals_text(*std, decimals));
   return out;
 }
 
@@ -116,9 +127,9 @@ std::string comparison_table(const RunResult& result) {
         html_escaped(quantity_in_words(reference.quantity)), html_escaped(reference.section),
         html_escaped(kind_in_words(reference.kind)), html_escaped(reference.case_name),
         reference.relation == "approx" ? "≈ " : "",
-        value_cell(reference.value, reference.std, reference.unit),
-        value_cell(row.simulated, row.simulated_std, reference.unit), row.z ? decimals_text(*row.z, 1) : "–",
-        shown.style, shown.words, html_escaped(reference.source));
+        value_cell(reference.quantity, reference.value, reference.std, reference.unit),
+        value_cell(reference.quantity, row.simulated, row.simulated_std, reference.unit),
+        row.z ? decimals_text(*row.z, 1) : "–", shown.style, shown.words, html_escaped(reference.source));
   }
   return out + "</tbody></table></div>\n";
 }
@@ -154,12 +165,10 @@ std::string section_rows(const RunResult& result, std::size_t table) {
           std::find_if(section_fields().begin(), section_fields().end(),
                        [&](const SectionField& one) { return std::string_view(one.name) == name; });
       const MeanStd both = mean_std(over_seeds(result, table, i, field->value));
-      const bool chi = std::string_view(name) == "chi";
-      const std::string value = both.n == 0 ? "–"
-                                : chi       ? decimals_text(both.mean, 2)
-                                            : number_text(both.mean);
-      out += fmt::format("<td>{}{}</td>", value,
-                         both.n > 1 ? fmt::format("<small>± {}</small>", number_text(both.std, 2)) : "");
+      out += fmt::format(
+          "<td>{}</td>",
+          both.n == 0 ? "–"
+                      : value_cell(name, both.mean, both.n > 1 ? std::optional(both.std) : std::nullopt, ""));
     }
     out += "</tr>\n";
   }
@@ -228,9 +237,10 @@ std::string facts(const RunResult& result) {
     fact("time step", low == high ? high + " µs" : low + " to " + high + " µs");
   }
   fact("largest overlap", number_text(100 * overlap, 2) + " % of the smaller radius");
-  fact("lost from the model",
-       lost > 0 ? fmt::format("{} spheres, {} t", count_text(lost), number_text(lost_mass / 1000))
-                : std::string("nothing"));
+  fact("lost from the model", lost > 0
+                                  ? fmt::format("{} spheres, {} t{}", count_text(lost),
+                                                number_text(lost_mass / 1000), n > 1 ? " over all seeds" : "")
+                                  : std::string("nothing"));
   fact("at rest", interrupted ? "no: the run was interrupted"
                   : at_rest   ? "yes: every dump came to rest"
                               : "no: a dump was still moving at its time limit");

@@ -32,7 +32,8 @@ struct Series {
 std::string terminal(int width, int height) {
   return fmt::format(
       "set terminal svg noenhanced size {},{} font 'Helvetica,Arial,DejaVu Sans,sans-serif,13' lw 1.4\n"
-      "set border 3 lc rgb '#888888'\nset tics nomirror out scale 0.5 tc rgb '#333333'\n"
+      "set minussign\nset clip two\nset border 3 lc rgb '#888888'\nset tics nomirror "
+      "out scale 0.5 tc rgb '#333333'\n"
       "set grid lc rgb '#e6e6e6' lw 0.6 lt 1\n",
       width, height);
 }
@@ -87,14 +88,21 @@ std::vector<Series> printed(const RunResult& result, const std::string& quantity
     Series& series = by_source[{reference.kind, reference.case_name}];
     series.points.push_back({x, reference.value, reference.std.value_or(kNone)});
   }
-  static const char* const colours[] = {"#d55e00", "#000000", "#009e73", "#cc79a7", "#e69f00"};
-  static const int marks[] = {5, 9, 13, 11, 15};
+  // Measured values are black, calculated ones in warm colours; a second case of a kind gets the next look.
+  struct Look {
+    const char* colour;
+    int mark;
+  };
+  static const Look measured[] = {{"#000000", 9}, {"#777777", 11}},
+                    calculated[] = {{"#d55e00", 5}, {"#cc79a7", 13}};
+  std::size_t seen[2] = {0, 0};
   std::vector<Series> out;
   for (auto& [source, series] : by_source) {
-    const std::size_t i = out.size() % 5;
+    const bool by_hand = source.first == "measured";
+    const Look& look = (by_hand ? measured : calculated)[seen[by_hand ? 0 : 1]++ % 2];
     series.label = fmt::format("{} ({})", kind_in_words(source.first), source.second);
-    series.colour = colours[i];
-    series.mark = marks[i];
+    series.colour = look.colour;
+    series.mark = look.mark;
     out.push_back(std::move(series));
   }
   return out;
@@ -122,8 +130,11 @@ std::string curves(const std::vector<Series>& all, const std::string& prefix, bo
     if (series.joined)
       out += fmt::format("{}${}{} using 1:2 with lines lw 1.5 lc rgb '{}' notitle", out.empty() ? "" : ", ",
                          prefix, i, series.colour);
-    out += fmt::format("{}${}{} using 1:2:3 with yerrorbars pt {} ps 0.6 lc rgb '{}' {}",
-                       out.empty() ? "" : ", ", prefix, i, series.mark, series.colour, title);
+    // Not gnuplot's error bars: those leave a gap around each point, in which a short bar is lost.
+    out += fmt::format(
+        "{0}${1}{2} using 1:($2-$3):(0):(2*$3) with vectors nohead lw 1.2 lc rgb '{3}' notitle, "
+        "${1}{2} using 1:2 with points pt {4} ps 0.6 lc rgb '{3}' {5}",
+        out.empty() ? "" : ", ", prefix, i, series.colour, series.mark, title);
   }
   return "plot " + out + "\n";
 }
@@ -142,7 +153,7 @@ constexpr const char* kAlongSlope =
 Picture chi_chart(const RunResult& result, const std::filesystem::path& folder) {
   const std::vector<Series> all = with_printed(result, "chi", [](const Section& s) { return s.chi; });
   run_gnuplot(terminal(760, 430) + kAlongSlope +
-                  "set ylabel 'segregation degree chi'\nset key top left reverse Left samplen 2\n"
+                  "set ylabel 'segregation degree χ'\nset key top left reverse Left samplen 2\n"
                   "set xzeroaxis lc rgb '#888888' lw 1 lt 1\nset offsets 0,0,graph 0.18,graph 0.05\n" +
                   data_blocks(all, "d", 0.008) + curves(all, "d", true),
               folder / "chi.svg");
@@ -166,6 +177,7 @@ Picture diameters_chart(const RunResult& result, const std::filesystem::path& fo
   for (const Panel& panel : panels) {
     const std::vector<Series> all =
         with_printed(result, panel.quantity, [&](const Section& s) { return s.*panel.value; });
+    if (std::all_of(all.begin(), all.end(), [](const Series& one) { return one.points.empty(); })) continue;
     text += data_blocks(all, panel.name, 0.012);
     text +=
         fmt::format("set ylabel '{0} / {0} as dumped'\nset offsets 0,0,graph 0.3,graph 0.08\n", panel.name);
@@ -213,9 +225,10 @@ Picture passing_chart(const RunResult& result, const std::filesystem::path& fold
   add("as dumped", table.original_passing, "lw 2 dt 2 lc rgb '#000000'");
   run_gnuplot(terminal(760, 430) +
                   "set logscale x\nset xlabel 'grain diameter (m)'\nset ylabel 'passing by mass (%)'\n"
-                  "set yrange [0:100]\nset xtics format '%g'\nset grid mxtics\nset key outside right Left "
+                  "set yrange [0:100]\nset grid\nset key outside right Left "
                   "reverse samplen 2\n" +
-                  fmt::format("set xrange [{:.6g}:{:.6g}]\n", table.sieves.front(), table.sieves.back()) +
+                  fmt::format("set xrange [{:.6g}:{:.6g}]\nset xtics ({})\n", table.sieves.front(),
+                              table.sieves.back(), log_ticks(table.sieves.front(), table.sieves.back())) +
                   blocks + "plot " + plots + "\n",
               folder / "passing.svg");
   return {"Passing curves", folder / "passing.svg",
@@ -311,7 +324,9 @@ Picture repose_chart(const RunResult& result, const std::filesystem::path& folde
                   fmt::format("set yrange [{}:0.6]\nset ytics ({})\n", 0.4 - static_cast<double>(rows.size()),
                               ticks) +
                   "set xlabel 'repose angle (degrees)'\nset offsets graph 0.08,graph 0.08,0,0\nunset key\n" +
-                  blocks + "END\nplot $a using 1:2:3:4 with xerrorbars pt 7 ps 0.7 lc rgb variable\n",
+                  blocks +
+                  "END\nplot $a using ($1-$3):2:(2*$3):(0):4 with vectors nohead lw 1.2 lc rgb variable, "
+                  "$a using 1:2:4 with points pt 7 ps 0.7 lc rgb variable\n",
               folder / "repose.svg");
   return {"Repose angle", folder / "repose.svg",
           "Readings of the heap beside printed ones; bars are one standard deviation."};

@@ -48,9 +48,9 @@ std::string segregation_sentence(const RunResult& result) {
 }
 
 std::string with_std(const MeanStd& both, int decimals) {
-  return both.n > 1
-             ? fmt::format("{} ± {}", decimals_text(both.mean, decimals), decimals_text(both.std, decimals))
-             : decimals_text(both.mean, decimals);
+  return both.n > 1 ? fmt::format("{}\u00a0±\u00a0{}", decimals_text(both.mean, decimals),
+                                  decimals_text(both.std, decimals))
+                    : decimals_text(both.mean, decimals);
 }
 
 std::string angle_sentences(const RunResult& result) {
@@ -135,10 +135,14 @@ std::string decimals_text(double value, int decimals) {
   return value < 0 && !zero ? "−" + text : text;
 }
 
-std::string number_text(double value, int digits) {
-  if (!std::isfinite(value)) return "–";
+int decimals_of(double value, int digits) {
+  if (!std::isfinite(value)) return 0;
   const int before = value == 0 ? 1 : static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1;
-  return decimals_text(value, std::clamp(digits - before, 0, 6));
+  return std::clamp(digits - before, 0, 6);
+}
+
+std::string number_text(double value, int digits) {
+  return decimals_text(value, decimals_of(value, digits));
 }
 
 std::string count_text(double value) {

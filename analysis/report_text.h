@@ -16,6 +16,8 @@ std::string base64(std::string_view bytes);
 
 /// Three significant digits without exponent and with a true minus sign; a dash for what does not exist.
 std::string number_text(double value, int digits = 3);
+/// Decimals that show this many significant digits.
+int decimals_of(double value, int digits = 3);
 /// A fixed number of decimals, else as number_text.
 std::string decimals_text(double value, int decimals);
 /// 12 345 678 in groups of three.

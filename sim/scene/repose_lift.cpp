@@ -46,7 +46,7 @@ RunOutcome run_repose_lift(const Scenario& scenario, const ReposeLift& e, std::u
   const double start = world.time(), seconds = lift / e.lift_velocity;
   Pose up = rest;
   up.position.z() += lift;
-  world.mesh(container).set_motion(Motion({{start, rest}, {start + seconds, up}}));
+  world.set_mesh_motion(container, Motion({{start, rest}, {start + seconds, up}}));
   if (!stage.advance(seconds, "lifting", 0.35, 0.7)) return stage.finish();
   world.remove_mesh(container);
   if (!stage.advance_to_rest("coming to rest", 0.7, 1.0)) return stage.finish();

@@ -157,6 +157,8 @@ Fields keys(Numerics& n) {
   return {
       {"time_step_safety", Number{&n.time_step_safety, kNone, {0, 1, true, false}},
        "Share of the stable time step that is taken (engine rrlinear)."},
+      {"sleep", Boolean{&n.sleep},
+       "Whether grains at rest sleep until disturbed: they then cost nothing (engine rrlinear)."},
       {"impulse_time_step_s", Number{&n.impulse_time_step, kSecond, {1e-6, 0.1}},
        "Time step of the engine impulse."},
       {"impulse_iterations", Integer{&n.impulse_iterations, {1, 1000}},

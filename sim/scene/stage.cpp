@@ -25,6 +25,7 @@ Stage::Stage(const Scenario& scenario, std::uint64_t seed, int threads, const Ru
   settings.time_step_safety = scenario.numerics.time_step_safety;
   settings.impulse_time_step = scenario.numerics.impulse_time_step;
   settings.impulse_iterations = scenario.numerics.impulse_iterations;
+  settings.sleep = scenario.numerics.sleep;
   settings.threads = threads;
   world_ =
       scenario.engine == EngineKind::rrlinear ? make_rrlinear_world(settings) : make_impulse_world(settings);

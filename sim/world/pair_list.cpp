@@ -56,6 +56,8 @@ void PairList::rebuild(const Spheres& s, const std::vector<int>& order, double h
   partner_.clear();
   history.clear();
   touching.clear();
+  rest_force.clear();
+  rest_known.clear();
   dirty_.assign(n, 0);
   radius_.assign(n, 0.0);
   skin2_.assign(n, 0.0);
@@ -90,7 +92,7 @@ const std::vector<int>& PairList::repair(const Spheres& s, double horizon) {
   std::sort(dropped_.begin(), dropped_.end());
   for (const int i : dropped_) grid_.remove(i);
   for (int i = 0; i < s.movable; ++i) {
-    if (s.lost[i]) continue;
+    if (s.lost[i] || s.asleep[i]) continue;
     const Vec3& at = grid_.position(i);
     if ((s.place[i].vec() - at).squaredNorm() > 0.25 * skin2_[i]) listed_.push_back(i);
   }
@@ -126,6 +128,8 @@ void PairList::merge(const Spheres& s) {
   new_partner_.clear();
   new_history_.clear();
   new_touching_.clear();
+  new_rest_force_.clear();
+  new_rest_known_.clear();
   std::size_t f = 0;
   for (int i = 0; i < n; ++i) {
     new_begin_[i] = static_cast<int>(new_partner_.size());
@@ -140,6 +144,8 @@ void PairList::merge(const Spheres& s) {
           new_partner_.push_back(j);
           new_history_.push_back(history[p]);
           new_touching_.push_back(touching[p]);
+          new_rest_force_.push_back(rest_force[p]);
+          new_rest_known_.push_back(rest_known[p]);
         }
         if (j == found) ++f;
         ++p;
@@ -147,6 +153,8 @@ void PairList::merge(const Spheres& s) {
         new_partner_.push_back(found);
         new_history_.emplace_back();
         new_touching_.push_back(0);
+        new_rest_force_.push_back(Vec3::Zero());
+        new_rest_known_.push_back(0);
         ++f;
       } else {
         break;
@@ -158,9 +166,11 @@ void PairList::merge(const Spheres& s) {
   partner_.swap(new_partner_);
   history.swap(new_history_);
   touching.swap(new_touching_);
+  rest_force.swap(new_rest_force_);
+  rest_known.swap(new_rest_known_);
   for (const int i : listed_) dirty_[i] = 0;
   for (const int i : dropped_) dirty_[i] = 0;
-  if (keep_incoming_) index_incoming(n);
+  index_incoming(n);
 }
 
 void PairList::index_incoming(int count) {
@@ -168,8 +178,13 @@ void PairList::index_incoming(int count) {
   for (const int j : partner_) ++incoming_begin[j + 1];
   for (int i = 0; i < count; ++i) incoming_begin[i + 1] += incoming_begin[i];
   incoming_pair.resize(partner_.size());
-  std::vector<int> next(incoming_begin.begin(), incoming_begin.end() - 1);
-  for (int p = 0; p < static_cast<int>(partner_.size()); ++p) incoming_pair[next[partner_[p]]++] = p;
+  owner_.resize(partner_.size());
+  next_.assign(incoming_begin.begin(), incoming_begin.end() - 1);
+  for (int i = 0; i < count; ++i)
+    for (int p = begin_[i]; p < begin_[i + 1]; ++p) {
+      owner_[p] = i;
+      incoming_pair[next_[partner_[p]]++] = p;
+    }
 }
 
 }  // namespace scree

@@ -48,10 +48,13 @@ class PairList {
   // Contact memory, one a pair; `touching` tells whether it holds anything.
   std::vector<ContactHistory> history;
   std::vector<std::uint8_t> touching;
+  // Force that a sleeping sphere of the pair has got used to (N, on the owner), once `rest_known` is set.
+  std::vector<Vec3> rest_force;
+  std::vector<std::uint8_t> rest_known;
 
-  /// For each sphere, the pairs in which it is the partner, rising; filled by repair and rebuild when asked for.
-  void keep_incoming(bool on) { keep_incoming_ = on; }
+  /// For each sphere, the pairs in which it is the partner, rising, and the owner of each pair.
   std::vector<int> incoming_begin, incoming_pair;
+  int owner(int p) const { return owner_[p]; }
 
  private:
   void list_anew(int i, const Spheres& spheres, double horizon);
@@ -61,16 +64,17 @@ class PairList {
 
   NeighbourGrid grid_;
   std::vector<double> radius_, skin2_;
-  std::vector<int> begin_{0}, partner_;
+  std::vector<int> begin_{0}, partner_, owner_;
   std::vector<std::uint8_t> dirty_;
   std::vector<int> listed_, dropped_;
   std::vector<std::uint64_t> found_;  // owner << 32 | partner
-  bool keep_incoming_ = false;
 
   // Buffers of merge, kept to avoid allocation.
   std::vector<int> new_begin_, new_partner_;
   std::vector<ContactHistory> new_history_;
-  std::vector<std::uint8_t> new_touching_;
+  std::vector<std::uint8_t> new_touching_, new_rest_known_;
+  std::vector<Vec3> new_rest_force_;
+  std::vector<int> next_;
 };
 
 }  // namespace scree

@@ -40,6 +40,7 @@ void RockWorld::add_spheres(const std::vector<NewSphere>& spheres) {
     spheres_.id.push_back(id);
     spheres_.dump.push_back(s.dump);
     spheres_.lost.push_back(0);
+    spheres_.asleep.push_back(0);
     fixed_.push_back(s.fixed ? 1 : 0);
 
     shapes_.push_back(std::make_unique<btSphereShape>(radius));
@@ -74,6 +75,11 @@ int RockWorld::add_mesh(TriangleMesh mesh, const Surface& surface, Motion motion
   addRigidBody(&meshes_.back()->body(), kToolGroup, mask);
   scene_changed();
   return static_cast<int>(meshes_.size()) - 1;
+}
+
+void RockWorld::set_mesh_motion(int index, Motion motion) {
+  meshes_[index]->set_motion(std::move(motion));
+  scene_changed();
 }
 
 void RockWorld::remove_mesh(int index) {
@@ -128,7 +134,10 @@ Energy RockWorld::energy() const {
   return e;
 }
 
-btRigidBody* RockWorld::sphere_body(std::int64_t id) { return bodies_[static_cast<std::size_t>(id)].get(); }
+btRigidBody* RockWorld::sphere_body(std::int64_t id) {
+  update_bullet();
+  return bodies_[static_cast<std::size_t>(id)].get();
+}
 
 void RockWorld::check_spheres() {
   for (int i = 0; i < spheres_.size(); ++i) {

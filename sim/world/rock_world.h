@@ -2,8 +2,8 @@
 // A Bullet dynamics world of rock: one scene, two engines behind this interface.
 //
 // Spheres are Bullet rigid bodies with sphere shapes and meshes are kinematic Bullet bodies in both engines. `RrlinearWorld` steps the
-// contact law explicitly on its own arrays and writes the bodies back at the end of advance_to(), so that ray tests, debug
-// drawing and serialisation of Bullet see the scene; `ImpulseWorld` leaves the stepping to Bullet's solver.
+// contact law explicitly on its own arrays; update_bullet() writes the bodies back, so that ray tests, debug drawing and
+// serialisation of Bullet see the scene (stepSimulation() does it by itself); `ImpulseWorld` leaves the stepping to Bullet's solver.
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
@@ -34,6 +34,7 @@ struct WorldSettings {
   Vec3 domain_low = Vec3::Constant(-1e6), domain_high = Vec3::Constant(1e6);  ///< m; a sphere outside is lost
   double time_step_safety = 0.8;         ///< share of the stable step (rrlinear)
   double fixed_time_step = 0;            ///< s; above 0 it is used instead (rrlinear; for tests)
+  bool sleep = false;                    ///< spheres at rest cost nothing until disturbed (rrlinear; see sleep.h)
   int threads = 1;                       ///< worker threads of this world (rrlinear)
   double impulse_time_step = 1e-3;       ///< s (impulse)
   int impulse_iterations = 20;           ///< solver iterations (impulse)
@@ -47,6 +48,7 @@ struct WorldStatistics {
   std::int64_t lost_particles = 0;
   double lost_mass = 0;                  ///< kg
   std::int64_t list_repairs = 0;         ///< times the pair list was repaired
+  std::int64_t asleep = 0;               ///< spheres asleep now
 };
 
 /// Energies of the scene (J).
@@ -74,7 +76,9 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   void add_spheres(const std::vector<NewSphere>& spheres);
   /// Adds a mesh; returns its index, which stays valid.
   int add_mesh(TriangleMesh mesh, const Surface& surface, Motion motion);
-  MeshBody& mesh(int index) { return *meshes_[index]; }
+  const MeshBody& mesh(int index) const { return *meshes_[index]; }
+  /// Gives a mesh a new motion; it should start where the mesh is.
+  void set_mesh_motion(int index, Motion motion);
   /// Takes a mesh out of the scene; its index is not used again.
   void remove_mesh(int index);
 
@@ -92,7 +96,9 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   /// Share of the mass in the model that moves faster than `speed` (m/s).
   double moving_mass_share(double speed) const;
   virtual Energy energy() const;
-  /// The Bullet body of a sphere, by id; null when lost.
+  /// Brings Bullet's bodies and boxes to the present state.
+  virtual void update_bullet() {}
+  /// The Bullet body of a sphere, by id, in its present state; null when lost.
   btRigidBody* sphere_body(std::int64_t id);
 
  protected:

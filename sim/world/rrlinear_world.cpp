@@ -22,8 +22,7 @@ constexpr int kRangeSize = 1024;          // spheres a task
 
 }  // namespace
 
-RrlinearWorld::RrlinearWorld(const WorldSettings& settings) : RockWorld(settings), law_(settings.material) {
-  pairs_.keep_incoming(several_threads());
+RrlinearWorld::RrlinearWorld(const WorldSettings& settings) : RockWorld(settings), law_(settings.material), sleep_(settings.sleep) {
   if (several_threads()) arena_ = std::make_unique<tbb::task_arena>(settings_.threads);
 }
 
@@ -52,6 +51,7 @@ double RrlinearWorld::horizon() const { return kSkinHorizon * dt_; }
 int RrlinearWorld::stepSimulation(btScalar span, int, btScalar) {
   const auto before = statistics_.steps;
   advance_to(time_ + span);
+  update_bullet();
   return static_cast<int>(statistics_.steps - before);
 }
 
@@ -67,6 +67,7 @@ void RrlinearWorld::advance_to(double end) {
       steps_to_check_ = kStepsBetweenChecks;
       check_spheres();
       if (repair_due_) repair();
+      sleep_.look(spheres_, pairs_, watched_, total_force_, law_, time_, settings_.gravity);
       dt_ = stable_step();
     }
     // The last step is cut to end on time; a remainder below a millionth of a step is rounding.
@@ -75,7 +76,6 @@ void RrlinearWorld::advance_to(double end) {
     step(last ? left : dt_);
     if (last) time_ = end;
   }
-  write_back();
 }
 
 void RrlinearWorld::prepare() {
@@ -100,14 +100,34 @@ void RrlinearWorld::prepare() {
   for (int k = 0; k < n; ++k)
     if (order[k] < static_cast<int>(slot_of_.size())) old_slot[k] = slot_of_[order[k]];
   slot_of_ = old_slot;
-  for (MeshContact& slot : slots_)
-    if (slot.body >= 0 && !meshes_[slot.body]) slot.body = -1;
   facet_begin_.assign(spheres_.movable + 1, 0);
   facets_.clear();
   std::vector<int> all(spheres_.movable);
   std::iota(all.begin(), all.end(), 0);
+  // A sphere that touched a mesh which was taken away has lost its hold.
+  std::vector<std::uint8_t> bereft(n, 0);
+  for (int i = 0; i < spheres_.movable; ++i)
+    if (slot_of_[i] >= 0)
+      for (int k = 0; k < kMeshContactSlots; ++k) {
+        MeshContact& slot = slots_[slot_of_[i] + k];
+        if (slot.body >= 0 && !meshes_[slot.body]) slot.body = -1, bereft[i] = 1;
+      }
   list_facets(all, true);
+  find_watched();
+  for (int i = 0; i < n; ++i) bereft[i] |= watched_[i];
+  total_force_.assign(n, {});
+  sleep_.restart(spheres_, pairs_, bereft, law_, time_, settings_.gravity.norm());
   steps_to_check_ = 0;
+}
+
+void RrlinearWorld::find_watched() {
+  watched_.assign(spheres_.size(), 0);
+  if (!sleep_.on()) return;
+  for (const int i : facet_rows_)
+    for (int k = facet_begin_[i]; k < facet_begin_[i + 1]; ++k) {
+      const Motion& motion = meshes_[facets_[k].body]->motion();
+      if (motion.moves() && motion.last_time() >= time_) watched_[i] = 1;
+    }
 }
 
 void RrlinearWorld::repair() {
@@ -118,6 +138,10 @@ void RrlinearWorld::repair() {
   for (const auto& mesh : meshes_)
     if (mesh && mesh->moved_since_mark() > tool_skin_) tools_moved = true;
   if (!listed.empty() || tools_moved) list_facets(listed, tools_moved);
+  if (sleep_.on()) {
+    find_watched();
+    sleep_.mark_rows(spheres_, pairs_);
+  }
 }
 
 void RrlinearWorld::list_facets(const std::vector<int>& listed, bool tools_moved) {
@@ -186,14 +210,20 @@ double RrlinearWorld::pair_forces(int first, int last) {
   const Quad* place = spheres_.place.data();
   const Quad* velocity = spheres_.velocity.data();
   const Quad* spin = spheres_.spin.data();
+  const std::uint8_t* asleep = spheres_.asleep.data();
   double overlap_ratio = 0;
   for (int i = first; i < last; ++i) {
+    if (!sleep_.row_active(i)) continue;
+    const bool owner_sleeps = asleep[i] != 0;
     const Quad pi = place[i];
     const Vec3 vi = velocity[i].vec(), wi = spin[i].vec();
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
     double contacts = 0;
     for (int p = pairs_.begin(i); p < pairs_.end(i); ++p) {
       const int j = pairs_.partner(p);
+      // Fixed balls count as asleep beside a sleeper: nothing between them changes.
+      const bool partner_sleeps = asleep[j] != 0;
+      if (owner_sleeps && (partner_sleeps || j >= spheres_.movable)) continue;
       const Quad pj = place[j];
       const double dx = pj.x - pi.x, dy = pj.y - pi.y, dz = pj.z - pi.z, reach = pi.w + pj.w;
       const double d2 = dx * dx + dy * dy + dz * dz;
@@ -202,6 +232,7 @@ double RrlinearWorld::pair_forces(int first, int last) {
           pairs_.touching[p] = 0;
           pairs_.history[p] = {};
         }
+        if (owner_sleeps != partner_sleeps) sleep_.feel(pairs_, p, owner_sleeps ? i : j, Vec3::Zero());
         continue;
       }
       pairs_.touching[p] = 1;
@@ -220,6 +251,7 @@ double RrlinearWorld::pair_forces(int first, int last) {
       motion.reduced_mass = j < spheres_.movable ? m1 * m2 / (m1 + m2) : m1;
       motion.dt = last_dt_;
       const ContactForce f = contact_step(law_, ball_ball(law_, pi.w, pj.w), motion, pairs_.history[p]);
+      if (owner_sleeps != partner_sleeps) sleep_.feel(pairs_, p, owner_sleeps ? i : j, f.force);
       const Vec3 lever = n.cross(f.force);
       force += f.force;
       torque += arm1 * lever + f.rolling;
@@ -243,6 +275,7 @@ double RrlinearWorld::pair_forces(int first, int last) {
 // Sums over the contacts in which a sphere is partner, by rising owner: the order in which one thread scatters them.
 void RrlinearWorld::gather(int first, int last) {
   for (int j = first; j < last; ++j) {
+    if (spheres_.asleep[j]) continue;
     Quad force, torque;
     for (int k = pairs_.incoming_begin[j]; k < pairs_.incoming_begin[j + 1]; ++k) {
       const int p = pairs_.incoming_pair[k];
@@ -261,6 +294,7 @@ double RrlinearWorld::mesh_forces(int first, int last) {
   ContactLaw law = law_;
   for (int row = first; row < last; ++row) {
     const int i = facet_rows_[row];
+    if (spheres_.asleep[i]) continue;
     const Quad place = spheres_.place[i];
     const std::span<MeshContact> slots(slots_.data() + slot_of_[i], kMeshContactSlots);
     const std::span<const FacetRef> facets(facets_.data() + facet_begin_[i],
@@ -301,8 +335,6 @@ void RrlinearWorld::forces() {
     overlap = for_ranges(movable, [&](int a, int b) { return pair_forces<false>(a, b); });
     for_ranges(movable, [&](int a, int b) { return gather(a, b), 0.0; });
   } else {
-    std::fill(incoming_force_.begin(), incoming_force_.begin() + movable, Quad{});
-    std::fill(incoming_torque_.begin(), incoming_torque_.begin() + movable, Quad{});
     overlap = pair_forces<true>(0, movable);
   }
   const int rows = static_cast<int>(facet_rows_.size());
@@ -318,13 +350,18 @@ bool RrlinearWorld::integrate(int first, int last, double dt) {
   bool left = false;
   for (int i = first; i < last; ++i) {
     if (spheres_.lost[i]) continue;
+    if (spheres_.asleep[i]) {
+      incoming_force_[i] = incoming_torque_[i] = {};
+      continue;
+    }
     Quad& x = spheres_.place[i];
     Quad& v = spheres_.velocity[i];
     Quad& w = spheres_.spin[i];
     const Quad& f = spheres_.force[i];
     const Quad& t = spheres_.torque[i];
-    const Quad& fi = incoming_force_[i];
-    const Quad& ti = incoming_torque_[i];
+    Quad& fi = incoming_force_[i];
+    Quad& ti = incoming_torque_[i];
+    total_force_[i] = {fi.x + f.x, fi.y + f.y, fi.z + f.z, fi.w + f.w};
     const double a = always || fi.w + f.w > 0 ? alpha : 0.0;
     const double per_mass = dt / v.w, per_inertia = dt / w.w;
     v.x += per_mass * locally_damped(fi.x + f.x + v.w * g.x(), v.x, a);
@@ -336,6 +373,7 @@ bool RrlinearWorld::integrate(int first, int last, double dt) {
     x.x += dt * v.x;
     x.y += dt * v.y;
     x.z += dt * v.z;
+    fi = ti = {};  // summed anew in the next step
     if (pairs_.left_skin(i, x)) left = true;
   }
   return left;
@@ -353,12 +391,14 @@ void RrlinearWorld::step(double dt) {
   forces();
   if (for_ranges(spheres_.movable, [&](int a, int b) { return integrate(a, b, dt) ? 1.0 : 0.0; }) > 0)
     repair_due_ = true;
+  statistics_.particle_steps += static_cast<double>(spheres_.movable - statistics_.lost_particles - sleep_.asleep());
+  sleep_.wake_disturbed(spheres_, pairs_);
+  statistics_.asleep = sleep_.asleep();
   time_ += dt;
   last_dt_ = dt;
   move_tools();
   if (repair_due_) repair();
   ++statistics_.steps;
-  statistics_.particle_steps += spheres_.movable - static_cast<double>(statistics_.lost_particles);
   statistics_.time_step_max = std::max(statistics_.time_step_max, dt);
   if (statistics_.time_step_min == 0 || dt_ < statistics_.time_step_min) statistics_.time_step_min = dt_;
 }
@@ -376,7 +416,8 @@ double RrlinearWorld::stable_step() const {
     sum[i].shift += k.kn * along + k.ks * across;
     sum[i].turn += (k.ks * arm * arm + k.kr) * across;
   };
-  for (int i = 0; i < n; ++i)
+  for (int i = 0; i < n; ++i) {
+    if (!sleep_.row_active(i)) continue;
     for (int p = pairs_.begin(i); p < pairs_.end(i); ++p) {
       const int j = pairs_.partner(p);
       const Quad &a = spheres_.place[i], &b = spheres_.place[j];
@@ -389,10 +430,11 @@ double RrlinearWorld::stable_step() const {
       add(i, k, normal, a.w);
       add(j, k, normal, b.w);
     }
+  }
   double smallest = kLargestStep * kLargestStep;  // squared
   double travel = kLargestStep;
   for (int i = 0; i < n; ++i) {
-    if (spheres_.lost[i]) continue;
+    if (spheres_.lost[i] || spheres_.asleep[i]) continue;
     const double radius = spheres_.place[i].w;
     const ContactStiffness wall = ball_facet(law_, radius);
     if (slot_of_[i] >= 0) {
@@ -441,7 +483,7 @@ std::vector<MeshContact> RrlinearWorld::mesh_contacts(int index) const {
   return contacts;
 }
 
-void RrlinearWorld::write_back() {
+void RrlinearWorld::update_bullet() {
   for (const auto& mesh : meshes_)
     if (mesh && mesh->motion().moves()) {
       mesh->write_back();

@@ -8,7 +8,7 @@
 //   2. gravity and local damping; v(t + dt/2) = v(t - dt/2) + a dt; x(t + dt) = x(t) + v(t + dt/2) dt;
 //   3. tools move; spheres that may have left their skin are listed anew.
 // The step is recomputed as the run goes on: safety * min over spheres and axes of sqrt(m / k), sqrt(I / k_rot) with k summed over the
-// contacts a sphere has and those it may soon have.
+// contacts a sphere has and those it may soon have. Spheres at rest may sleep (sleep.h).
 //
 // Sums over contacts run in a fixed order: a sphere's force is (contacts in which it is partner, by owner) + (contacts it owns, by
 // partner) + (meshes), whether one thread adds as it goes or several gather afterwards, so results are bitwise the same for any
@@ -19,6 +19,7 @@
 #include "sim/world/mesh_contact.h"
 #include "sim/world/pair_list.h"
 #include "sim/world/rock_world.h"
+#include "sim/world/sleep.h"
 
 namespace scree {
 
@@ -32,6 +33,7 @@ class RrlinearWorld final : public RockWorld {
   std::vector<MeshContact> mesh_contacts(int index) const;
   /// Bullet's own entry: steps by `span` seconds.
   int stepSimulation(btScalar span, int max_sub_steps = 1, btScalar fixed = 1. / 60) override;
+  void update_bullet() override;
 
  protected:
   void scene_changed() override { changed_ = true; }
@@ -54,7 +56,7 @@ class RrlinearWorld final : public RockWorld {
   void repair();
   void list_facets(const std::vector<int>& listed, bool tools_moved);
   double stable_step() const;
-  void write_back();
+  void find_watched();
   double horizon() const;
   bool several_threads() const { return settings_.threads > 1; }
   template <class Body>
@@ -68,6 +70,7 @@ class RrlinearWorld final : public RockWorld {
   int steps_to_check_ = 0;
   PairList pairs_;
   std::vector<Quad> incoming_force_, incoming_torque_;  // from contacts in which the sphere is partner
+  std::vector<Quad> total_force_;                       // of all contacts in the last step, N; w: their number
   std::vector<PairForce> pair_force_;                   // several threads only
   // Facets near each movable sphere, in rows; spheres with none have an empty row.
   std::vector<int> facet_begin_;
@@ -76,6 +79,8 @@ class RrlinearWorld final : public RockWorld {
   std::vector<MeshContact> slots_;
   std::vector<int> facet_rows_;        // spheres with facets, rising
   double tool_skin_ = 0;
+  Sleep sleep_;
+  std::vector<std::uint8_t> watched_;  // near a tool that moves: does not sleep
   std::unique_ptr<tbb::task_arena> arena_;
 };
 

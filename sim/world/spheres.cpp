@@ -60,6 +60,7 @@ std::vector<int> sort_spheres(Spheres& s, const std::vector<std::uint8_t>& fixed
   permute(s.id, order);
   permute(s.dump, order);
   permute(s.lost, order);
+  permute(s.asleep, order);
   s.movable = static_cast<int>(std::count(fixed.begin(), fixed.end(), 0));
   return order;
 }

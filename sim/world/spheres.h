@@ -34,7 +34,8 @@ struct Spheres {
   std::vector<Quad> torque;    ///< N m
   std::vector<std::int64_t> id;
   std::vector<std::int32_t> dump;
-  std::vector<std::uint8_t> lost;  ///< has left the model; takes no part any more
+  std::vector<std::uint8_t> lost;    ///< has left the model; takes no part any more
+  std::vector<std::uint8_t> asleep;  ///< at rest and not moved until disturbed (rrlinear)
   int movable = 0;
 
   int size() const { return static_cast<int>(place.size()); }

@@ -145,7 +145,7 @@ TEST(Limits, FilesThatAreNoScenarioAreRefusedQuickly) {
   }
   EXPECT_THAT(folder.messages(bomb), ElementsAre(testing::HasSubstr("more than 50000 values")));
   std::string many;
-  for (int i = 0; i < 1000; ++i) many += "k" + std::to_string(i) + ": 1\n";
+  for (int i = 0; i < 1000; ++i) many += fmt::format("k{}: 1\n", i);
   EXPECT_THAT(folder.messages(many), testing::SizeIs(201));
 }
 
