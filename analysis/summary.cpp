@@ -49,8 +49,22 @@ std::vector<double> each(const RunResult& result, Value value) {
   return out;
 }
 
+/// Passing curves of one table: shares at the sieves, of the rock as dumped and of each section.
+Json passing_curves(const SectionTable& table) {
+  Json sections = Json::array();
+  for (const Section& section : table.sections) sections.push_back(section.passing);
+  return {{"n", table.sections.size()},
+          {"mass_outside_t", number(table.mass_outside / 1000)},
+          {"sieves_m", table.sieves},
+          {"original_passing", table.original_passing},
+          {"section_passing", sections}};
+}
+
 Json seed_facts(const SeedResult& seed) {
-  return {{"seed", seed.seed},
+  Json tables = Json::array();
+  for (const SectionTable& table : seed.sections) tables.push_back(passing_curves(table));
+  return {{"tables", tables},
+          {"seed", seed.seed},
           {"particles", seed.particles},
           {"fixed_balls", seed.fixed_balls},
           {"mass_t", number(seed.mass / 1000)},

@@ -14,6 +14,15 @@ namespace scree {
 /// when the file cannot be written.
 void write_summary(const RunResult& result, const std::filesystem::path& file);
 
+/// What comparison needs of a summary.json: the section tables (masses, chi, diameters) and repose angles of each seed, and the reference
+/// cases it was compared with. Throws std::runtime_error `file: what is wrong`.
+struct StoredRun {
+  std::string title;
+  std::vector<SeedResult> seeds;
+  std::vector<std::string> cases;
+};
+StoredRun read_summary(const std::filesystem::path& file);
+
 /// Writes sections.csv: one row for each seed, table and section; a value that does not exist is empty.
 /// Throws std::runtime_error when the file cannot be written.
 void write_sections_csv(const RunResult& result, const std::filesystem::path& file);

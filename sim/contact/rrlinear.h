@@ -80,7 +80,7 @@ struct ContactForce {
 
 /// Turns a remembered vector with the contact: into the new contact plane with its length kept, and about the normal by
 /// `angle` (small), the mean twist of the pieces.
-inline Vec3 turned_with_contact(const Vec3& v, const Vec3& n, double angle) {
+[[gnu::always_inline]] inline Vec3 turned_with_contact(const Vec3& v, const Vec3& n, double angle) {
   const Vec3 flat = v - n * v.dot(n);
   const double flat2 = flat.squaredNorm(), full2 = v.squaredNorm();
   if (!(flat2 > 1e-24 * full2) || full2 == 0.0) return Vec3::Zero();
@@ -89,7 +89,7 @@ inline Vec3 turned_with_contact(const Vec3& v, const Vec3& n, double angle) {
 }
 
 /// One step of the law; updates the history.
-inline ContactForce contact_step(const ContactLaw& law, const ContactStiffness& k, const ContactMotion& c,
+[[gnu::always_inline]] inline ContactForce contact_step(const ContactLaw& law, const ContactStiffness& k, const ContactMotion& c,
                                  ContactHistory& history) {
   const Vec3& n = c.normal;
   double fn = k.kn * c.overlap;

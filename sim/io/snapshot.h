@@ -10,8 +10,8 @@ namespace scree {
 /// One sphere of a snapshot.
 struct Grain {
   std::int64_t id = 0;       ///< stable through the run
-  Vec3 position;             ///< m
-  Vec3 velocity;             ///< m/s
+  Vec3 position = Vec3::Zero();  ///< m
+  Vec3 velocity = Vec3::Zero();  ///< m/s
   double diameter = 0;       ///< m
   double mass = 0;           ///< kg
   int dump = 0;              ///< which dump brought it, from 1

@@ -26,13 +26,13 @@ Grain sphere(double diameter) {
 }
 
 /// Grains of two sizes filling a cone of radius `radius` (m) over z = floor with its axis at (x0, y0):
-/// centres on a jittered lattice of spacing 0.9 d, so that neighbours overlap in plan, inside the cone's
+/// centres on a jittered lattice of spacing 0.75 d, so that neighbours overlap in plan, inside the cone's
 /// surface.
 std::vector<Grain> cone(double angle, double radius = 0.5, double d = 0.02, double x0 = 0, double y0 = 0,
                         double floor = 0) {
   Random random(7, 0, RandomPurpose::positions);
   std::vector<Grain> heap;
-  const double slope = std::tan(radians(angle)), step = 0.85 * d;
+  const double slope = std::tan(radians(angle)), step = 0.75 * d;
   const int n = static_cast<int>(radius / step) + 1;
   for (int i = -n; i <= n; ++i)
     for (int j = -n; j <= n; ++j)
@@ -71,7 +71,7 @@ TEST_P(Cone, IsReadWithinAGrain) {
   EXPECT_NEAR(read.height, height, d);
   EXPECT_NEAR(read.radius, radius, d);
   EXPECT_NEAR(read.angle, angle, tolerance);
-  // The lattice's own steps (0.85 d) add to where half is covered.
+  // The lattice's own steps (0.75 d) add to where half is covered.
   EXPECT_NEAR(read.half_coverage, angle, 1.5 * tolerance);
   EXPECT_EQ(read.radii[0] > 0 && read.radii[1] > 0 && read.radii[2] > 0 && read.radii[3] > 0, true);
 }
