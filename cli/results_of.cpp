@@ -47,9 +47,8 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
     }
     r.profile = slope_profile(r.final_state.grains);
     r.slope_angle = slope_angle(r.profile, dump->bench.height);
-  } else if (const auto* lift = std::get_if<ReposeLift>(&scenario.experiment)) {
-    if (!r.final_state.grains.empty())
-      r.repose = measure_repose(r.final_state.grains, lift->base_layer == BaseLayer::none ? 0.0 : 1.0);
+  } else if (!r.final_state.grains.empty()) {
+    r.repose = measure_repose(r.final_state.grains);
   }
   return r;
 }

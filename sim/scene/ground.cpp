@@ -15,28 +15,24 @@ double radians(double degrees) {
   return degrees * std::numbers::pi / 180.0;
 }
 
-// Balls of one row of the layer: at (x, z) on the surface with unit normal (nx, nz), along y.
-void add_row(std::vector<NewSphere>& balls, double x, double z, double nx, double nz, double half_width,
-             bool shifted, BaseLayer layer, Random& random) {
+// Balls of one row of the layer, along y through (x, z) on the surface; (tx, tz) is the direction of steepest descent.
+void add_row(std::vector<NewSphere>& balls, double x, double z, double tx, double tz, double half_width, bool shifted,
+             BaseLayer layer, Random& random) {
   const double d = kBallDiameter;
-  for (double y = -half_width + (shifted ? 1.0 : 0.5) * d; y <= half_width - 0.25 * d; y += d) {
-    if (layer == BaseLayer::mixed && random.uniform() < 0.5) {
-      for (const double along : {-0.25, 0.25})
-        for (const double across : {-0.25, 0.25}) {
-          NewSphere ball;
-          ball.position = {x + nz * along * d + nx * 0.25 * d, y + across * d,
-                           z - nx * along * d + nz * 0.25 * d};
-          ball.diameter = 0.5 * d;
-          ball.fixed = true;
-          balls.push_back(ball);
-        }
-      continue;
-    }
+  const auto add = [&](const Vec3& position, double diameter) {
     NewSphere ball;
-    ball.position = {x + 0.5 * d * nx, y, z + 0.5 * d * nz};
-    ball.diameter = d;
+    ball.position = position;
+    ball.diameter = diameter;
     ball.fixed = true;
     balls.push_back(ball);
+  };
+  for (double y = -half_width + (shifted ? 1.0 : 0.5) * d; y <= half_width - 0.25 * d; y += d) {
+    if (layer == BaseLayer::homogeneous || random.uniform() < 0.5) {
+      add({x, y, z}, d);
+      continue;
+    }
+    for (const double along : {-0.25 * d, 0.25 * d})
+      for (const double across : {-0.25 * d, 0.25 * d}) add({x + along * tx, y + across, z + along * tz}, 0.5 * d);
   }
 }
 
@@ -81,30 +77,22 @@ std::vector<NewSphere> make_base_layer(const BenchSpec& b, std::uint64_t seed) {
   std::vector<NewSphere> balls;
   if (b.base_layer == BaseLayer::none) return balls;
   Random random(seed, 0, RandomPurpose::base_layer);
-  const double toe = toe_of(b), angle = radians(b.slope_deg), pitch = kBallDiameter * std::sqrt(0.75),
-               half = 0.5 * b.width;
-  const double r = 0.5 * kBallDiameter;
-  bool shifted = false;
-  // Top, backwards from the crest.
-  for (double x = 0.0; x >= -b.top_length + r; x -= pitch, shifted = !shifted)
-    add_row(balls, x, b.height, 0, 1, half, shifted, b.base_layer, random);
-  // Slope, downwards. Balls of slope and top meet at the crest along the bisector; at the toe the floor's
-  // come first.
-  shifted = true;
-  const double length = b.height / std::sin(angle), toe_gap = r * std::tan(0.5 * angle);
-  double along = 2.0 * r - r * angle;  // one diameter from the last ball of the top, measured round the crest
-  for (; along <= length - toe_gap; along += pitch, shifted = !shifted)
-    add_row(balls, along * std::cos(angle), b.height - along * std::sin(angle), std::sin(angle),
-            std::cos(angle), half, shifted, b.base_layer, random);
-  // Floor, outwards from where its first ball touches the last of the slope.
-  along -= pitch;
-  const double last_x = along * std::cos(angle) + r * std::sin(angle),
-               last_z = b.height - along * std::sin(angle) + r * std::cos(angle);
-  const double rise = last_z - r;
-  double x = last_x + std::sqrt(std::max(pitch * pitch - rise * rise, 0.0));
-  x = std::max(x, toe + toe_gap);
-  for (; x <= toe + b.floor_length - r; x += pitch, shifted = !shifted)
-    add_row(balls, x, 0, 0, 1, half, shifted, b.base_layer, random);
+  const double angle = radians(b.slope_deg), slope = b.height / std::sin(angle), half = 0.5 * b.width;
+  const double pitch = kBallDiameter * std::sqrt(0.75);
+  // Rows at equal distances along the surface, one of them on the crest.
+  const int first = -static_cast<int>((b.top_length - 0.5 * kBallDiameter) / pitch);
+  const int last = static_cast<int>((slope + b.floor_length - 0.5 * kBallDiameter) / pitch);
+  for (int row = first; row <= last; ++row) {
+    const double s = row * pitch;
+    const bool shifted = row % 2 != 0;
+    if (s < 0)
+      add_row(balls, s, b.height, 1, 0, half, shifted, b.base_layer, random);
+    else if (s < slope)
+      add_row(balls, s * std::cos(angle), b.height - s * std::sin(angle), std::cos(angle), -std::sin(angle), half,
+              shifted, b.base_layer, random);
+    else
+      add_row(balls, toe_of(b) + s - slope, 0, 1, 0, half, shifted, b.base_layer, random);
+  }
   return balls;
 }
 
@@ -116,7 +104,7 @@ std::vector<NewSphere> make_floor_layer(double half_width, BaseLayer layer, std:
   bool shifted = false;
   for (double x = -half_width + 0.5 * kBallDiameter; x <= half_width - 0.5 * kBallDiameter;
        x += pitch, shifted = !shifted)
-    add_row(balls, x, 0, 0, 1, half_width, shifted, layer, random);
+    add_row(balls, x, 0, 1, 0, half_width, shifted, layer, random);
   return balls;
 }
 

@@ -84,8 +84,8 @@ struct ReposeLift {
 
 /// A load comes to rest when less than `moving_mass_share` of the mass moves faster than `speed`.
 struct StopRule {
-  double speed = 0.05;                 ///< m/s
-  double moving_mass_share = 0.002;
+  double speed = 0.1;                  ///< m/s
+  double moving_mass_share = 0.01;
   double min_time = 1.0;               ///< s after the release
   double max_time = 60;                ///< s after the release; reaching it is reported
 };

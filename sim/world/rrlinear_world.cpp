@@ -68,7 +68,7 @@ void RrlinearWorld::advance_to(double end) {
       check_spheres();
       if (repair_due_) repair();
       sleep_.look(spheres_, pairs_, watched_, total_force_, law_, time_, settings_.gravity);
-      dt_ = stable_step();
+      dt_ = stable_step(false);
     }
     // The last step is cut to end on time; a remainder below a millionth of a step is rounding.
     const double left = end - time_;
@@ -117,6 +117,8 @@ void RrlinearWorld::prepare() {
   for (int i = 0; i < n; ++i) bereft[i] |= watched_[i];
   total_force_.assign(n, {});
   sleep_.restart(spheres_, pairs_, bereft, law_, time_, settings_.gravity.norm());
+  own_step2_.assign(spheres_.movable, 0.0);
+  dt_ = stable_step(true);
   steps_to_check_ = 0;
 }
 
@@ -403,7 +405,7 @@ void RrlinearWorld::step(double dt) {
   if (statistics_.time_step_min == 0 || dt_ < statistics_.time_step_min) statistics_.time_step_min = dt_;
 }
 
-double RrlinearWorld::stable_step() const {
+double RrlinearWorld::stable_step(bool sleepers_too) {
   if (settings_.fixed_time_step > 0) return settings_.fixed_time_step;
   const int n = spheres_.movable;
   struct Stiffness {
@@ -417,7 +419,7 @@ double RrlinearWorld::stable_step() const {
     sum[i].turn += (k.ks * arm * arm + k.kr) * across;
   };
   for (int i = 0; i < n; ++i) {
-    if (!sleep_.row_active(i)) continue;
+    if (!sleepers_too && !sleep_.row_active(i)) continue;
     for (int p = pairs_.begin(i); p < pairs_.end(i); ++p) {
       const int j = pairs_.partner(p);
       const Quad &a = spheres_.place[i], &b = spheres_.place[j];
@@ -434,7 +436,12 @@ double RrlinearWorld::stable_step() const {
   double smallest = kLargestStep * kLargestStep;  // squared
   double travel = kLargestStep;
   for (int i = 0; i < n; ++i) {
-    if (spheres_.lost[i] || spheres_.asleep[i]) continue;
+    if (spheres_.lost[i]) continue;
+    if (spheres_.asleep[i] && !sleepers_too) {
+      // A sleeper may wake before the next look: its own step, known from when it fell asleep, still counts.
+      smallest = std::min(smallest, own_step2_[i]);
+      continue;
+    }
     const double radius = spheres_.place[i].w;
     const ContactStiffness wall = ball_facet(law_, radius);
     if (slot_of_[i] >= 0) {
@@ -451,7 +458,8 @@ double RrlinearWorld::stable_step() const {
     const ContactStiffness any = ball_ball(law_, radius, radius);
     const double shift = std::max(sum[i].shift.maxCoeff(), any.kn);
     const double turn = std::max(sum[i].turn.maxCoeff(), any.ks * radius * radius + any.kr);
-    smallest = std::min({smallest, spheres_.velocity[i].w / shift, spheres_.spin[i].w / turn});
+    own_step2_[i] = std::min(spheres_.velocity[i].w / shift, spheres_.spin[i].w / turn);
+    smallest = std::min(smallest, own_step2_[i]);
     const double speed = spheres_.velocity[i].vec().norm();
     if (speed * travel > kMostTravel * radius) travel = kMostTravel * radius / speed;
   }

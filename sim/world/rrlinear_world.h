@@ -55,7 +55,7 @@ class RrlinearWorld final : public RockWorld {
   void move_tools();
   void repair();
   void list_facets(const std::vector<int>& listed, bool tools_moved);
-  double stable_step() const;
+  double stable_step(bool sleepers_too);
   void find_watched();
   double horizon() const;
   bool several_threads() const { return settings_.threads > 1; }
@@ -65,6 +65,7 @@ class RrlinearWorld final : public RockWorld {
   ContactLaw law_;
   bool changed_ = true;      // spheres or meshes were added or removed
   bool repair_due_ = false;  // a sphere may have left its skin, or was lost
+  std::vector<double> own_step2_;  // square of each sphere's own stable step, s2
   double dt_ = 0;            // stable step, s
   double last_dt_ = 0;       // the step that led to the present places, s
   int steps_to_check_ = 0;

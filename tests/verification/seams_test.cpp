@@ -154,12 +154,12 @@ INSTANTIATE_TEST_SUITE_P(Angles, Corner, testing::Values(60.0, 90.0, 120.0, 150.
 
 // u / r = v sqrt(4 rho / (3 E)) for any radius: at 25 m/s and E = 1 MPa the sphere is pressed 1.5 radii deep and comes back with the speed
 // it came with (no damping).
-double rebound_speed(TriangleMesh wall, double speed) {
+double rebound_speed(TriangleMesh wall, double speed, double x = 0.07, double y = 0.03) {
   WorldSettings settings = weightless(0);
   settings.time_step_safety = 0.1;
   RrlinearWorld world(settings);
   const double radius = 0.5;
-  world.add_spheres({ball({0.07, 0.03, radius + 0.1}, radius, {0, 0, -speed})});
+  world.add_spheres({ball({x, y, radius + 0.1}, radius, {0, 0, -speed})});
   world.add_mesh(std::move(wall), {0, 0}, Motion::fixed(Pose{}));
   world.advance_to(6 * radius / speed + 0.5);
   EXPECT_GT(world.statistics().largest_overlap_ratio, 0.99 * speed * std::sqrt(4 * 2760.0 / 3e6));
@@ -172,6 +172,17 @@ TEST(PressedThrough, FaceOfAThickWallPushesBack) {
 
 TEST(PressedThrough, SheetPushesBackToTheSideItCameFrom) {
   EXPECT_NEAR(rebound_speed(regular_strip(10, 4, 1, 1), 10), 10, 0.1);
+}
+
+// The centre stands exactly over a diagonal: the closest point of both triangles is on their common edge.
+TEST(PressedThrough, SeamBelowTheCentreChangesNothing) {
+  EXPECT_NEAR(rebound_speed(make_box({-5, -5, -5}, {5, 5, 0}), 25, 0, 0), 25, 0.25);
+  MeshMaker sheet;
+  sheet.patch({-5, -5, 0}, {10, 0, 0}, {0, 10, 0}, 1, 1);
+  EXPECT_NEAR(rebound_speed(sheet.mesh(), 25, 0, 0), 25, 0.25);
+  MeshMaker fine;
+  fine.patch({-5, -5, 0}, {10, 0, 0}, {0, 10, 0}, 10, 10);
+  EXPECT_NEAR(rebound_speed(fine.mesh(), 25, 0, 0), 25, 0.25);
 }
 
 TEST(PressedThrough, FastSphereDoesNotPassASheet) {

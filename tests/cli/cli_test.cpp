@@ -1,0 +1,165 @@
+// The program as a user meets it: exit codes, messages, files, interruption, and the same numbers with any number of threads.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "scree_version.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Called {
+  int code;
+  std::string text;  // stdout and stderr
+};
+
+Called call(const std::string& arguments) {
+  const std::string command = std::string(SCREE_BINARY) + " " + arguments + " 2>&1 </dev/null";
+  FILE* pipe = popen(command.c_str(), "r");
+  Called result{-1, ""};
+  char buffer[4096];
+  while (const std::size_t n = fread(buffer, 1, sizeof buffer, pipe)) result.text.append(buffer, n);
+  result.code = WEXITSTATUS(pclose(pipe));
+  return result;
+}
+
+std::string slurp(const fs::path& file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+class Cli : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder = fs::temp_directory_path() / ("scree_cli_" + std::to_string(getpid()));
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+  }
+  void TearDown() override { fs::remove_all(folder); }
+  fs::path folder;
+  // A load of a few hundred spheres over a bench of 3 m: some seconds.
+  const std::string small = std::string(SCREE_SOURCE_DIR) + "/scenarios/quick_dump.yaml --set experiment.payload_t=10" +
+                            " --set experiment.bench.height_m=3 --set experiment.bench.width_m=30" +
+                            " --set experiment.bench.top_length_m=10 --set experiment.bench.floor_length_m=15";
+};
+
+TEST_F(Cli, RunWritesWhatItPromises) {
+  const fs::path out = folder / "run";
+  const Called run = call("run " + small + " --seeds 2 --out " + out.string());
+  ASSERT_EQ(run.code, 0) << run.text;
+  for (const char* name : {"scenario.yaml", "summary.json", "sections.csv", "report.html", "seed_10001/particles.h5",
+                           "seed_10001/particles.xdmf", "seed_10001/particles.xyz", "seed_10002/particles.h5"})
+    EXPECT_GT(fs::file_size(out / name), 100u) << name;
+  const auto summary = nlohmann::json::parse(slurp(out / "summary.json"));
+  for (const char* key : {"scenario", "engine", "seeds", "particles", "wall_seconds", "simulated_seconds", "particle_steps",
+                          "largest_overlap_ratio", "lost_particles", "sections", "comparison"})
+    EXPECT_TRUE(summary.contains(key)) << key;
+  // What was put in is in the sections, above them, or lost.
+  double mass = summary["lost_mass_t"].get<double>();
+  for (const auto& section : summary["sections"])
+    for (const auto& value : section["mass_t"]["per_seed"]) mass += value.get<double>();
+  for (const auto& seed : summary["per_seed"]) mass += seed["tables"][0]["mass_outside_t"].get<double>();
+  EXPECT_NEAR(mass, 20.0, 0.2);
+  EXPECT_TRUE(summary["at_rest"].get<bool>());
+
+  // The resolved scenario is a scenario, and gives the same numbers.
+  const Called again = call("run " + (out / "scenario.yaml").string() + " --seeds 2 --out " + (folder / "again").string());
+  ASSERT_EQ(again.code, 0) << again.text;
+  EXPECT_EQ(slurp(out / "sections.csv"), slurp(folder / "again" / "sections.csv"));
+
+  const Called compare = call("compare " + out.string() + " --case C1");
+  EXPECT_EQ(compare.code, 0) << compare.text;
+  EXPECT_NE(compare.text.find("share_above_1m"), std::string::npos) << compare.text;
+
+  const Called twice = call("run " + small + " --out " + out.string());
+  EXPECT_EQ(twice.code, 2);
+  EXPECT_NE(twice.text.find("is there already"), std::string::npos) << twice.text;
+}
+
+TEST_F(Cli, NumbersDoNotDependOnThreads) {
+  std::string first;
+  for (const int threads : {1, 2, 4}) {
+    const fs::path out = folder / std::to_string(threads);
+    const Called run = call("run " + small + " --threads " + std::to_string(threads) + " --out " + out.string());
+    ASSERT_EQ(run.code, 0) << run.text;
+    // The extended XYZ holds every place of every frame.
+    const std::string places = slurp(out / "seed_10001" / "particles.xyz");
+    if (first.empty()) first = places;
+    EXPECT_TRUE(places == first) << threads << " threads";
+  }
+}
+
+TEST_F(Cli, BadInputIsOneLineAndExitCodeTwo) {
+  struct Case {
+    const char* arguments;
+    const char* message;
+  };
+  const Case cases[] = {
+      {"", "subcommand"},
+      {"run", "file is required"},
+      {"run nowhere.yaml", "nowhere.yaml"},
+      {"dig scenarios/a1_10m.yaml", "dig"},
+      {"compare nowhere", "cannot be read"},
+      {"validate nowhere.yaml", "nowhere.yaml"},
+      {"run nowhere.yaml --seeds 0", "--seeds"},
+      {"run nowhere.yaml --threads x", "--threads"},
+  };
+  for (const Case& c : cases) {
+    const Called result = call(c.arguments);
+    EXPECT_EQ(result.code, 2) << c.arguments;
+    EXPECT_NE(result.text.find(c.message), std::string::npos) << c.arguments << ": " << result.text;
+    EXPECT_EQ(std::count(result.text.begin(), result.text.end(), '\n'), 1) << result.text;
+  }
+  const Called set = call("run " + small + " --set material.mux=1 --set material.mu=-1 --out " + (folder / "x").string());
+  EXPECT_EQ(set.code, 2);
+  EXPECT_NE(set.text.find("--set material.mux=1"), std::string::npos) << set.text;
+  EXPECT_NE(set.text.find("--set material.mu=-1"), std::string::npos) << set.text;
+  EXPECT_FALSE(fs::exists(folder / "x")) << "nothing is written before the input is good";
+}
+
+TEST_F(Cli, InterruptKeepsWhatIsDone) {
+  const fs::path out = folder / "run";
+  const std::string source = std::string(SCREE_SOURCE_DIR) + "/scenarios/quick_dump.yaml";
+  const pid_t child = fork();
+  if (child == 0) {
+    if (!freopen("/dev/null", "w", stdout) || !freopen("/dev/null", "w", stderr)) _exit(98);
+    execl(SCREE_BINARY, "scree", "run", source.c_str(), "--out", out.c_str(), nullptr);
+    _exit(99);
+  }
+  // Some frames are on disk before the interruption.
+  for (int k = 0; k < 600 && !(fs::exists(out / "seed_10001" / "particles.xyz") &&
+                               fs::file_size(out / "seed_10001" / "particles.xyz") > 200000);
+       ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  kill(child, SIGINT);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  const auto summary = nlohmann::json::parse(slurp(out / "summary.json"));
+  EXPECT_TRUE(summary["interrupted"].get<bool>());
+  EXPECT_FALSE(summary["at_rest"].get<bool>()) << "an interrupted run does not look finished";
+  EXPECT_NE(slurp(out / "report.html").find("ended by the user"), std::string::npos);
+}
+
+TEST_F(Cli, ValidateAndSchema) {
+  const Called good = call("validate " + std::string(SCREE_SOURCE_DIR) + "/scenarios/a1_10m.yaml");
+  EXPECT_EQ(good.code, 0) << good.text;
+  EXPECT_NE(good.text.find("ok"), std::string::npos);
+  const Called schema = call("schema");
+  EXPECT_EQ(schema.code, 0);
+  EXPECT_TRUE(nlohmann::json::parse(schema.text).contains("properties"));
+}
+
+}  // namespace

@@ -1,0 +1,48 @@
+// The laboratory repose test, 75 kg of Lab0, against PFC3D (table B.2) with the bars of the product: 2 degrees at mu = mu_r = 0.2
+// (25.25) and 2.5 degrees at 0.4 (38.49), mean of three seeds.
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "analysis/repose_angle.h"
+#include "analysis/results.h"
+#include "scree_version.h"
+#include "sim/scene/run.h"
+#include "sim/scene/scenario.h"
+
+namespace scree {
+namespace {
+
+const std::filesystem::path kSource = SCREE_SOURCE_DIR;
+
+double printed_angle(const std::string& name) {
+  for (const ReferenceValue& value : read_reference(kSource / "assets" / "reference" / "results.csv"))
+    if (value.case_name == name && value.quantity == "angle" && value.kind == "pfc3d") return value.value;
+  ADD_FAILURE() << "no printed angle for " << name;
+  return 0;
+}
+
+double mean_angle(const char* scenario_file) {
+  ScenarioResult loaded = load_scenario(kSource / "scenarios" / scenario_file, {}, kSource / "assets");
+  EXPECT_TRUE(loaded.errors.empty());
+  const Scenario& scenario = loaded.scenario;
+  std::vector<double> angles(scenario.seeds.size());
+  for (std::size_t k = 0; k < angles.size(); ++k) {
+    const RunOutcome outcome = run_scenario(scenario, scenario.seeds[k], 1, {});
+    EXPECT_TRUE(outcome.at_rest);
+    angles[k] = measure_repose(outcome.final_state.grains).angle;
+  }
+  EXPECT_EQ(angles.size(), 3u);
+  return mean_std(angles).mean;
+}
+
+TEST(ReposeLab, FrictionOfTwoTenths) {
+  EXPECT_NEAR(mean_angle("repose_lab.yaml"), printed_angle("lab_repose_0.2_0.2"), 2.0);
+}
+
+TEST(ReposeLab, FrictionOfFourTenths) {
+  EXPECT_NEAR(mean_angle("repose_lab_04.yaml"), printed_angle("lab_repose_0.4_0.4"), 2.5);
+}
+
+}  // namespace
+}  // namespace scree

@@ -1,0 +1,101 @@
+// The second engine behind the same interface.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "sim/world/rock_world.h"
+
+namespace scree {
+namespace {
+
+constexpr double kGravity = 9.81, kRadius = 0.5;
+
+NewSphere ball(const Vec3& position, double radius, const Vec3& velocity = Vec3::Zero()) {
+  NewSphere s;
+  s.position = position;
+  s.diameter = 2 * radius;
+  s.dump = 1;
+  s.velocity = velocity;
+  return s;
+}
+
+void add_floor(RockWorld& world, const Surface& surface) {
+  world.add_mesh(make_box({-20, -20, -2}, {20, 20, 0}), surface, Motion::fixed(Pose{}));
+}
+
+TEST(ImpulseWorld, BallFallsAndRestsOnTheFloor) {
+  WorldSettings settings;
+  settings.material.local_damping = 0;
+  const auto world = make_impulse_world(settings);
+  world->add_spheres({ball({0, 0, kRadius + 1.0}, kRadius)});
+  add_floor(*world, {0.44, 0.44});
+  world->advance_to(0.4);
+  // Semi-implicit Euler from rest: v = g t, place late by g t dt / 2.
+  EXPECT_NEAR(world->snapshot().grains[0].velocity.z(), -kGravity * 0.4, 1e-6);
+  EXPECT_NEAR(world->snapshot().grains[0].position.z(), kRadius + 1 - 0.5 * kGravity * 0.16, kGravity * 0.4 * 1e-3);
+  world->advance_to(3.0);
+  // Bullet leaves spheres within its slop of the surface: 2 % of the radius is asked for.
+  EXPECT_NEAR(world->snapshot().grains[0].position.z(), kRadius, 0.02 * kRadius);
+  EXPECT_LT(world->snapshot().grains[0].velocity.norm(), 1e-3);
+  EXPECT_EQ(world->statistics().lost_particles, 0);
+}
+
+TEST(ImpulseWorld, LocalDampingActsInFlight) {
+  WorldSettings settings;
+  settings.material.local_damping = 0.4;
+  const auto world = make_impulse_world(settings);
+  world->add_spheres({ball({0, 0, 10}, kRadius)});
+  world->advance_to(0.5);
+  EXPECT_NEAR(world->snapshot().grains[0].velocity.z(), -0.6 * kGravity * 0.5, 1e-3);
+}
+
+double speed_on_incline(double mu, double mu_r, double tilt) {
+  WorldSettings settings;
+  settings.material.local_damping = 0;
+  settings.gravity = kGravity * Vec3(std::sin(tilt), 0, -std::cos(tilt));
+  const auto world = make_impulse_world(settings);
+  world->add_spheres({ball({0, 0, kRadius}, kRadius)});
+  add_floor(*world, {mu, mu_r});
+  world->advance_to(1.0);
+  return world->snapshot().grains[0].velocity.x();
+}
+
+// Bullet's friction is a cone only roughly and its contact has a slop: 10 % is asked for.
+TEST(ImpulseWorld, RollsOrRestsOnAnIncline) {
+  const double tilt = 20 * std::numbers::pi / 180;
+  EXPECT_LT(std::abs(speed_on_incline(0.8, 1.3 * std::tan(tilt), tilt)), 0.02);
+  for (const double mu_r : {0.0, 0.15}) {
+    const double expected = 5.0 / 7 * kGravity * (std::sin(tilt) - mu_r * std::cos(tilt));  // over 1 s
+    EXPECT_NEAR(speed_on_incline(0.8, mu_r, tilt), expected, 0.1 * expected) << mu_r;
+  }
+  const double sliding = kGravity * (std::sin(tilt) - 0.05 * std::cos(tilt));
+  EXPECT_NEAR(speed_on_incline(0.05, 0, tilt), sliding, 0.1 * sliding);
+}
+
+TEST(ImpulseWorld, LostSphereIsCounted) {
+  WorldSettings settings;
+  settings.domain_low = {-10, -10, -10};
+  const auto world = make_impulse_world(settings);
+  world->add_spheres({ball({0, 0, 0}, kRadius), ball({5, 0, 1000}, kRadius)});
+  world->advance_to(3.0);
+  EXPECT_EQ(world->statistics().lost_particles, 1);
+  EXPECT_EQ(world->snapshot().grains.size(), 1u);
+  EXPECT_EQ(world->snapshot().grains[0].id, 1);
+}
+
+TEST(ImpulseWorld, FixedBallsStayAndCarry) {
+  WorldSettings settings;
+  const auto world = make_impulse_world(settings);
+  NewSphere base = ball({0, 0, 0}, kRadius);
+  base.fixed = true;
+  base.dump = 0;
+  world->add_spheres({ball({0, 0, 2 * kRadius + 0.1}, kRadius), base});
+  world->advance_to(1.0);
+  EXPECT_EQ(world->fixed_balls().size(), 1u);
+  EXPECT_EQ(world->fixed_balls()[0].position, Vec3::Zero());
+  EXPECT_NEAR(world->snapshot().grains[0].position.z(), 2 * kRadius, 0.04 * kRadius);
+}
+
+}  // namespace
+}  // namespace scree

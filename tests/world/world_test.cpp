@@ -1,0 +1,243 @@
+// The explicit world as a whole: the same result for any number of threads, runaways, lost spheres, what Bullet sees.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include "sim/material/random.h"
+#include "sim/world/rrlinear_world.h"
+
+namespace scree {
+namespace {
+
+NewSphere ball(const Vec3& position, double radius, const Vec3& velocity = Vec3::Zero()) {
+  NewSphere s;
+  s.position = position;
+  s.diameter = 2 * radius;
+  s.dump = 1;
+  s.velocity = velocity;
+  return s;
+}
+
+void add_floor(RockWorld& world) {
+  world.add_mesh(make_box({-20, -20, -2}, {20, 20, 0}), {0.4, 0.4}, Motion::fixed(Pose{}));
+}
+
+// Mixed spheres of ratio 1:6 that fall on a floor and on each other.
+std::vector<NewSphere> rain(int per_side, int layers) {
+  Random random(4, 0, RandomPurpose::positions);
+  std::vector<NewSphere> spheres;
+  for (int k = 0; k < layers; ++k)
+    for (int i = 0; i < per_side; ++i)
+      for (int j = 0; j < per_side; ++j) {
+        const Vec3 at(0.5 * (i - 0.5 * per_side) + random.uniform(-0.02, 0.02),
+                      0.5 * (j - 0.5 * per_side) + random.uniform(-0.02, 0.02), 0.26 + 0.5 * k);
+        spheres.push_back(ball(at, random.uniform() < 0.2 ? 0.23 : random.uniform(0.04, 0.15), {0, 0, -3}));
+      }
+  return spheres;
+}
+
+bool same_bits(const std::vector<Quad>& a, const std::vector<Quad>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Quad)) == 0;
+}
+
+void expect_same_state(const RockWorld& a, const RockWorld& b) {
+  EXPECT_EQ(a.spheres().id, b.spheres().id);
+  EXPECT_TRUE(same_bits(a.spheres().place, b.spheres().place));
+  EXPECT_TRUE(same_bits(a.spheres().velocity, b.spheres().velocity));
+  EXPECT_TRUE(same_bits(a.spheres().spin, b.spheres().spin));
+}
+
+class Determinism : public testing::TestWithParam<bool> {};
+
+// 2,592 spheres: more than one task holds, so that several threads do share the work.
+TEST_P(Determinism, AnyNumberOfThreadsGivesTheSameBits) {
+  const auto run = [](int threads) {
+    WorldSettings settings;
+    settings.threads = threads;
+    settings.sleep = GetParam();
+    auto world = std::make_unique<RrlinearWorld>(settings);
+    world->add_spheres(rain(18, 8));
+    add_floor(*world);
+    world->advance_to(0.3);
+    world->add_spheres({ball({0, 0, 6}, 0.2), ball({0.1, 0.2, 7}, 0.1)});  // and in a second portion
+    world->advance_to(0.6);
+    return world;
+  };
+  const auto one = run(1);
+  EXPECT_GT(one->statistics().largest_overlap_ratio, 0.02);
+  for (const int threads : {1, 2, 4}) {
+    const auto again = run(threads);
+    expect_same_state(*one, *again);
+    EXPECT_EQ(one->statistics().steps, again->statistics().steps);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(WithAndWithoutSleep, Determinism, testing::Bool());
+
+// Whether a run is asked for in one piece or in many looks at step boundaries does not matter.
+TEST(World, LooksAtStepBoundariesDoNotChangeTheRun) {
+  WorldSettings settings;
+  settings.fixed_time_step = 0x1p-11;  // exact in binary, so that times add up exactly
+  RrlinearWorld one(settings), many(settings);
+  for (RrlinearWorld* world : {&one, &many}) {
+    world->add_spheres(rain(6, 4));
+    add_floor(*world);
+  }
+  one.advance_to(0.5);
+  for (int k = 1; k <= 64; ++k) many.advance_to(0.5 * k / 64);
+  expect_same_state(one, many);
+}
+
+std::vector<std::vector<std::int64_t>> partners(const RrlinearWorld& world, std::int64_t without) {
+  std::vector<std::vector<std::int64_t>> lists;
+  const Spheres& s = world.spheres();
+  for (int i = 0; i < s.size(); ++i) {
+    if (s.id[i] == without) continue;
+    auto& row = lists.emplace_back();
+    for (int p = world.pairs().begin(i); p < world.pairs().end(i); ++p) row.push_back(s.id[world.pairs().partner(p)]);
+  }
+  return lists;
+}
+
+// A sphere at 200 m/s far away repairs its own lists. Its skin is as large as the largest sphere's radius allows and lasts at least
+// skin / (v dt) steps; nobody else is listed anew because of it.
+TEST(World, RunawayLeavesTheOthersAlone) {
+  WorldSettings settings;
+  settings.fixed_time_step = 2e-4;
+  RrlinearWorld quiet(settings), runaway(settings);
+  std::vector<NewSphere> spheres = rain(6, 4);
+  for (RrlinearWorld* world : {&quiet, &runaway}) {
+    world->add_spheres(spheres);
+    add_floor(*world);
+    world->advance_to(4.0);  // at rest
+  }
+  // Beyond all others on every axis, so that it comes last in the order of the spheres.
+  const auto id = static_cast<std::int64_t>(spheres.size());
+  runaway.add_spheres({ball({100, 100, 100}, 0.2, {200, 0, 0})});
+  quiet.add_spheres({ball({100, 100, 100}, 0.2)});
+  for (RrlinearWorld* world : {&quiet, &runaway}) world->advance_to(4.0);
+  const auto before = partners(runaway, id);
+  std::vector<Vec3> places, listed;
+  for (int i = 0; i < runaway.spheres().size(); ++i) {
+    places.push_back(runaway.spheres().place[i].vec());
+    listed.push_back(runaway.pairs().listed_at(i));
+  }
+  const std::int64_t quiet_before = quiet.statistics().list_repairs, before_repairs = runaway.statistics().list_repairs;
+  const auto steps = runaway.statistics().steps;
+  quiet.advance_to(4.2);
+  runaway.advance_to(4.2);
+  EXPECT_EQ(partners(runaway, id), before);
+  for (int i = 0; i < runaway.spheres().size(); ++i) {
+    if (runaway.spheres().id[i] == id) continue;
+    ASSERT_EQ(runaway.spheres().id[i], quiet.spheres().id[i]);
+    // One that moves by itself, by more than half its skin, may be listed anew whenever somebody is.
+    const Quad& now = runaway.spheres().place[i];
+    if ((now.vec() - places[i]).norm() < 0.05 * now.w) {
+      ASSERT_EQ(runaway.pairs().listed_at(i), listed[i]);
+    }
+    ASSERT_EQ(runaway.spheres().place[i].vec(), quiet.spheres().place[i].vec());
+    ASSERT_EQ(runaway.spheres().velocity[i].vec(), quiet.spheres().velocity[i].vec());
+  }
+  const double moved = 200 * settings.fixed_time_step;  // m a step; a skin is at least the largest radius here
+  const double own = static_cast<double>(runaway.statistics().steps - steps) * moved / 0.2;
+  EXPECT_LE(static_cast<double>(runaway.statistics().list_repairs - before_repairs),
+            own + 1 + static_cast<double>(quiet.statistics().list_repairs - quiet_before));
+}
+
+TEST(World, LostSphereIsCountedAndMissedByNobody) {
+  WorldSettings settings;
+  settings.fixed_time_step = 5e-4;
+  settings.domain_high = {30, 30, 30};
+  RrlinearWorld with(settings), without(settings);
+  std::vector<NewSphere> spheres = rain(6, 4);
+  const auto id = static_cast<std::int64_t>(spheres.size());
+  spheres.push_back(ball({25, 25, 25}, 0.2));
+  without.add_spheres(spheres);
+  spheres.back().velocity = {20, 0, 0};
+  with.add_spheres(spheres);
+  for (RrlinearWorld* world : {&with, &without}) {
+    add_floor(*world);
+    world->advance_to(1.0);
+  }
+  EXPECT_EQ(with.statistics().lost_particles, 1);
+  const double mass = settings.material.density * 4.0 / 3 * std::numbers::pi * 0.008;
+  EXPECT_NEAR(with.statistics().lost_mass, mass, 1e-9 * mass);
+  EXPECT_EQ(with.sphere_body(id), nullptr);
+  const Snapshot a = with.snapshot(), b = without.snapshot();
+  ASSERT_EQ(a.grains.size() + 1, b.grains.size());
+  for (std::size_t i = 0; i < a.grains.size(); ++i) {
+    EXPECT_EQ(a.grains[i].id, b.grains[i].id);
+    EXPECT_EQ(a.grains[i].position, b.grains[i].position);
+    EXPECT_EQ(a.grains[i].velocity, b.grains[i].velocity);
+  }
+  // And spheres may be added afterwards.
+  with.add_spheres({ball({0, 0, 8}, 0.2)});
+  with.advance_to(1.1);
+  EXPECT_EQ(with.statistics().lost_particles, 1);
+  EXPECT_EQ(with.snapshot().grains.size(), b.grains.size());
+}
+
+TEST(World, TooFastASphereIsABlowUp) {
+  WorldSettings settings;
+  settings.fixed_time_step = 1e-4;
+  RrlinearWorld world(settings);
+  world.add_spheres({ball({0, 0, 0}, 0.1, {600, 0, 0})});
+  EXPECT_THROW(world.advance_to(0.1), BlowUp);
+}
+
+TEST(World, EnergyCanBeAskedBeforeTheFirstStep) {
+  WorldSettings settings;
+  RrlinearWorld world(settings);
+  world.add_spheres({ball({0, 0, 2}, 0.5), ball({0, 0, 4}, 0.5)});
+  const double mass = settings.material.density * 4.0 / 3 * std::numbers::pi * 0.125;
+  EXPECT_NEAR(world.energy().potential, mass * 9.81 * 6, 1e-6);
+}
+
+struct RayHit : btCollisionWorld::ClosestRayResultCallback {
+  RayHit(const Vec3& from, const Vec3& to) : ClosestRayResultCallback(to_bullet(from), to_bullet(to)) {
+    m_collisionFilterMask = btBroadphaseProxy::AllFilter;
+  }
+};
+
+TEST(World, BulletSeesSpheresAndMeshesWhereTheyAre) {
+  RrlinearWorld world((WorldSettings()));
+  const double radius = 0.3;
+  world.add_spheres({ball({1, 2, 3}, radius, {1, 0, 0})});
+  const int lift = world.add_mesh(make_box({-1, -1, -1}, {1, 1, 0}), {0.4, 0.4},
+                                  Motion({{0.0, Pose{}}, {2.0, Pose{{-8, 0, 2}, Quaternion::Identity()}}}));
+  world.advance_to(0.5);
+  world.update_bullet();
+  const Snapshot shot = world.snapshot();
+  const Vec3 x = shot.grains[0].position;
+  EXPECT_GT(x.x(), 1.2);
+  const btRigidBody* body = world.sphere_body(0);
+  EXPECT_EQ(from_bullet(body->getWorldTransform().getOrigin()), x);
+  EXPECT_EQ(from_bullet(body->getLinearVelocity()), shot.grains[0].velocity);
+
+  RayHit sphere(x + Vec3(0, 0, 5), x - Vec3(0, 0, 5));
+  world.rayTest(sphere.m_rayFromWorld, sphere.m_rayToWorld, sphere);
+  ASSERT_TRUE(sphere.hasHit());
+  EXPECT_EQ(sphere.m_collisionObject->getUserIndex(), 0);
+  EXPECT_NEAR(sphere.m_hitPointWorld.z(), x.z() + radius, 1e-4);  // Bullet's convex cast stops at 1e-4
+
+  // The box has risen by 2 m * 0.5 / 2.
+  EXPECT_NEAR(world.mesh(lift).state().pose.position.z(), 0.5, 1e-12);
+  RayHit box({-2, 0, 5}, {-2, 0, -5});
+  world.rayTest(box.m_rayFromWorld, box.m_rayToWorld, box);
+  ASSERT_TRUE(box.hasHit());
+  EXPECT_NEAR(box.m_hitPointWorld.z(), 0.5, 1e-6);
+}
+
+TEST(World, StepSimulationIsBulletsOwnEntry) {
+  RrlinearWorld world((WorldSettings()));
+  world.add_spheres({ball({0, 0, 5}, 0.3)});
+  btDiscreteDynamicsWorld& bullet = world;
+  EXPECT_GT(bullet.stepSimulation(0.1), 0);
+  EXPECT_NEAR(world.time(), 0.1, 1e-12);
+  EXPECT_LT(world.sphere_body(0)->getWorldTransform().getOrigin().z(), 5);
+}
+
+}  // namespace
+}  // namespace scree
