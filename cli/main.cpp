@@ -77,6 +77,11 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
+    const bool names_one = argc > 1 && argv[1][0] != '-';
+    if (names_one && app.get_subcommands().empty()) {
+      fmt::print(stderr, "scree: {}: no such subcommand; there are run, compare, validate and schema\n", argv[1]);
+      return kBadInput;
+    }
     fmt::print(stderr, "scree: {} (see scree --help)\n", error.what());
     return kBadInput;
   }

@@ -47,7 +47,7 @@ ImpulseWorld::ImpulseWorld(const WorldSettings& settings) : RockWorld(settings) 
   gCalculateCombinedRestitutionCallback = no_restitution;
   getSolverInfo().m_numIterations = settings_.impulse_iterations;
   getSolverInfo().m_restitutionVelocityThreshold = 0;
-  setForceUpdateAllAabbs(true);
+  setForceUpdateAllAabbs(false);  // what stands still keeps its box
 }
 
 std::unique_ptr<RockWorld> make_impulse_world(const WorldSettings& settings) {
@@ -62,8 +62,8 @@ void ImpulseWorld::prepare() {
     btRigidBody& body = *bodies_[static_cast<std::size_t>(spheres_.id[i])];
     body.setFriction(settings_.material.mu);
     body.setRollingFriction(settings_.material.mu_r);
-    body.setActivationState(DISABLE_DEACTIVATION);
     if (fixed_[i]) continue;
+    body.setActivationState(DISABLE_DEACTIVATION);
     const double mass = spheres_.velocity[i].w / kMassUnit;
     body.setMassProps(mass, btVector3(1, 1, 1) * (spheres_.spin[i].w / kMassUnit));
     body.setGravity(to_bullet(settings_.gravity));
@@ -80,6 +80,8 @@ void ImpulseWorld::advance_to(double end) {
     const double left = end - time_;
     const bool last = left <= settings_.impulse_time_step * (1 + 1e-6);
     const double dt = last ? left : settings_.impulse_time_step;
+    clearForces();
+    applyGravity();
     internalSingleStepSimulation(dt);
     time_ = last ? end : time_ + dt;
     read_back();
@@ -95,7 +97,6 @@ void ImpulseWorld::advance_to(double end) {
     check_spheres();
     if (changed_) prepare();
   }
-  clearForces();
 }
 
 void ImpulseWorld::integrateTransforms(btScalar dt) {

@@ -10,8 +10,14 @@ namespace {
 
 constexpr double kTooFast = 500.0;  // m/s; no fall of this field is a tenth of it
 
-// Collision groups: spheres of the explicit engine meet nothing of Bullet's but queries and bodies that others add.
-constexpr int kRockGroup = 1 << 10, kToolGroup = 1 << 11;
+// Collision groups. Where Bullet moves the rock it meets fixed balls and tools, which do not meet each other. In the
+// explicit engine spheres meet nothing of Bullet's but queries and bodies that others add.
+constexpr int kRockGroup = 1 << 10, kFixedGroup = 1 << 11, kToolGroup = 1 << 12;
+
+int mask_of(int group, bool bullet_moves_spheres) {
+  if (!bullet_moves_spheres) return btBroadphaseProxy::DefaultFilter;
+  return group == kRockGroup ? btBroadphaseProxy::AllFilter : btBroadphaseProxy::DefaultFilter | kRockGroup;
+}
 
 }  // namespace
 
@@ -58,8 +64,8 @@ void RockWorld::add_spheres(const std::vector<NewSphere>& spheres) {
     } else if (!s.fixed) {
       body->setCollisionFlags(body->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
     }
-    const int mask = bullet_moves_spheres() ? btBroadphaseProxy::AllFilter : btBroadphaseProxy::DefaultFilter;
-    addRigidBody(body.get(), kRockGroup, mask);
+    const int group = s.fixed ? kFixedGroup : kRockGroup;
+    addRigidBody(body.get(), group, mask_of(group, bullet_moves_spheres()));
     bodies_.push_back(std::move(body));
   }
   spheres_.movable = static_cast<int>(std::count(fixed_.begin(), fixed_.end(), 0));
@@ -71,8 +77,7 @@ int RockWorld::add_mesh(TriangleMesh mesh, const Surface& surface, Motion motion
   meshes_.back()->move_to(time_);
   meshes_.back()->mark();
   meshes_.back()->write_back();
-  const int mask = bullet_moves_spheres() ? btBroadphaseProxy::AllFilter : btBroadphaseProxy::DefaultFilter;
-  addRigidBody(&meshes_.back()->body(), kToolGroup, mask);
+  addRigidBody(&meshes_.back()->body(), kToolGroup, mask_of(kToolGroup, bullet_moves_spheres()));
   scene_changed();
   return static_cast<int>(meshes_.size()) - 1;
 }

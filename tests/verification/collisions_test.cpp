@@ -4,10 +4,13 @@
 namespace scree::verification {
 namespace {
 
-// Leapfrog on a linear spring keeps H = m v^2 / 2 + k x_n x_(n+1) / 2 (w^2 = k / m). A contact found within a step has x_n < 0 < x_(n+1)
+// Leapfrog on a linear spring keeps H = m v^2 / 2 + k x_n x_(n+1) / 2 (w^2 = k / m). A contact found within a
+// step has x_n < 0 < x_(n+1)
 // <= v dt, so H differs from m v^2 / 2 by at most k (v dt)^2 / 8, at the beginning as at the end:
 // the speed of rebound is exact but for the share (w dt)^2 / 8.
-double speed_error(double w, double dt) { return w * w * dt * dt / 8; }
+double speed_error(double w, double dt) {
+  return w * w * dt * dt / 8;
+}
 
 // Thesis, appendix D: two equal balls at +-1 m/s leave at -+1 m/s.
 // Contact time pi sqrt(m_eff / kn), largest overlap v_rel sqrt(m_eff / kn).
@@ -45,11 +48,12 @@ TEST(HeadOnCollision, UnequalBallsKeepMomentumAndEnergy) {
   EXPECT_NEAR(after, before, 2 * before * (m1 + m2) / m2 * speed_error(w, dt));
 }
 
-// Oblique impact on a wall, e = 1 (Chung & Ooi, Granular Matter 13, 2011, tests 4 and 5). When the contact slides throughout,
+// Oblique impact on a wall, e = 1 (Chung & Ooi, Granular Matter 13, 2011, tests 4 and 5). When the contact
+// slides throughout,
 //   v_x' = v_x - mu (1 + e) v_z,   omega' = 5/2 mu (1 + e) v_z / r.
-// It slides throughout, for a linear spring, when the slip s = v_x - 7/2 mu (v_z - v_n) never falls below mu k* v_n, v_n from v_z to
-// -v_z: v_x >= max(k*, 7 - k*) mu v_z. The law's lever is r - u/2; weighted with the force, u is pi/4 of the largest
-// overlap U, so the spin is smaller by the share pi U / (8 r).
+// It slides throughout, for a linear spring, when the slip s = v_x - 7/2 mu (v_z - v_n) never falls below mu
+// k* v_n, v_n from v_z to -v_z: v_x >= max(k*, 7 - k*) mu v_z. The law's lever is r - u/2; weighted with the
+// force, u is pi/4 of the largest overlap U, so the spin is smaller by the share pi U / (8 r).
 struct Oblique {
   double vx, vz, spin;
 };
@@ -72,8 +76,9 @@ TEST(ObliqueImpact, GrossSlidingBranch) {
   for (const double vx : {1.02 * limit, 2 * limit, 5 * limit}) {
     const Oblique out = oblique_impact(vx, mu, dt);
     EXPECT_NEAR(out.vz, vz, speed_error(w, dt));
-    // Friction is mu Fn in every step, so the balance with the rebound that came out holds to rounding. In the very first step of
-    // the contact the spring may still hold: then one step's slip is missing, below mu (w dt)^2.
+    // Friction is mu Fn in every step, so the balance with the rebound that came out holds to rounding. In
+    // the very first step of the contact the spring may still hold: then one step's slip is missing, below mu
+    // (w dt)^2.
     EXPECT_NEAR(out.vx, vx - mu * (vz + out.vz), mu * std::pow(w * dt, 2));
     const double lever = 1 - kPi * (vz / w) / (8 * radius);
     EXPECT_NEAR(out.spin, 2.5 * mu * (vz + out.vz) / radius * lever, 1e-4 * out.spin);
@@ -87,8 +92,8 @@ TEST(ObliqueImpact, SticksBelowTheLimitOfGrossSliding) {
   EXPECT_GT(out.vx, vx - 2 * mu + 1e-3);  // less than full friction was used
 }
 
-// Two equal spheres that meet head-on with equal spin (Chung & Ooi, test 7): contact points move apart at 2 omega r. Impulse m v_rel,
-// friction mu times it: v_t = mu v_rel, spin falls by 5/2 mu v_rel / r each.
+// Two equal spheres that meet head-on with equal spin (Chung & Ooi, test 7): contact points move apart at 2
+// omega r. Impulse m v_rel, friction mu times it: v_t = mu v_rel, spin falls by 5/2 mu v_rel / r each.
 TEST(ObliqueImpact, SpinningSpheresSlideOnEachOther) {
   const double radius = 0.1, speed = 0.2, mu = 0.4, dt = 5e-7;
   WorldSettings settings = weightless(dt);
@@ -103,7 +108,8 @@ TEST(ObliqueImpact, SpinningSpheresSlideOnEachOther) {
                      ball({radius + 1e-6, 0, 0}, radius, {-speed, 0, 0}, {0, 0, spin})});
   world.advance_to(2 * kPi / w);
   const Vec3 v0 = velocity_of(world, 0), v1 = velocity_of(world, 1);
-  // The closed form holds for a fixed normal. The line of centres turns, by 2 mu v_rel at the end over a contact time pi / w.
+  // The closed form holds for a fixed normal. The line of centres turns, by 2 mu v_rel at the end over a
+  // contact time pi / w.
   const double turned = 2 * mu * v_rel * (kPi / w) / (2 * radius);
   EXPECT_NEAR(v0.x(), -speed, v_rel * turned);
   EXPECT_NEAR(v0.y(), -mu * v_rel, v_rel * turned);  // its surface moves along +y: friction acts along -y
@@ -147,8 +153,8 @@ Momenta momenta(const RockWorld& world) {
   return sum;
 }
 
-// Contact points of both spheres coincide (the levers add up to the distance of the centres) and leapfrog turns x x m v by exactly
-// x x F dt, so angular momentum is kept to rounding as well.
+// Contact points of both spheres coincide (the levers add up to the distance of the centres) and leapfrog
+// turns x x m v by exactly x x F dt, so angular momentum is kept to rounding as well.
 TEST(ClosedSystem, MomentumAndAngularMomentumAreKept) {
   WorldSettings settings = weightless(1e-4);
   settings.material.mu = settings.material.mu_r = 0.4;
@@ -162,16 +168,18 @@ TEST(ClosedSystem, MomentumAndAngularMomentumAreKept) {
   EXPECT_LT((after.angular - before.angular).norm(), 1e-12 * before.angular_scale);
 }
 
-// Energy as read pairs v(t - dt/2) with x(t). The leapfrog invariant of one spring differs from that reading by k x v dt / 2, at most w dt
-// / 2 of the contact's energy; shear and rolling forces are read one step late, which is as much again. While spheres
-// touch, total(t) <= total(0) (1 + 1.5 w dt); once apart, the reading is exact and only the (w dt)^2 / 4 of each entry and exit is left.
+// Energy as read pairs v(t - dt/2) with x(t). The leapfrog invariant of one spring differs from that reading
+// by k x v dt / 2, at most w dt / 2 of the contact's energy; shear and rolling forces are read one step late,
+// which is as much again. While spheres touch, total(t) <= total(0) (1 + 1.5 w dt); once apart, the reading
+// is exact and only the (w dt)^2 / 4 of each entry and exit is left.
 TEST(ClosedSystem, FrictionNeverMakesEnergy) {
   const double dt = 1e-4;
   WorldSettings settings = weightless(dt);
   settings.material.mu = settings.material.mu_r = 0.4;
   const Material& m = settings.material;
   const double w = std::sqrt(pair_stiffness(m, 0.05, 0.05) / (0.5 * ball_mass(m, 0.05)));
-  const double w_turn = w * std::sqrt(2 * 3.5 / m.stiffness_ratio);  // shear and rolling springs on the inertia
+  const double w_turn =
+      w * std::sqrt(2 * 3.5 / m.stiffness_ratio);  // shear and rolling springs on the inertia
   RrlinearWorld world(settings);
   world.add_spheres(closing_cloud(0.42));
   world.advance_to(0);

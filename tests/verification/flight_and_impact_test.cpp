@@ -19,8 +19,8 @@ TEST(FreeFall, SpeedIsRootOfTwoGH) {
   EXPECT_NEAR(speed, std::sqrt(2 * kGravity * height), 1e-4 * speed);  // 19.81 m/s
 }
 
-// Local damping takes alpha of every force, gravity too: a falling body accelerates at (1 - alpha) g, a rising one is slowed at
-// (1 + alpha) g. Cundall (1987).
+// Local damping takes alpha of every force, gravity too: a falling body accelerates at (1 - alpha) g, a
+// rising one is slowed at (1 + alpha) g. Cundall (1987).
 TEST(FreeFall, LocalDampingActsInFlight) {
   const double dt = 1e-4, alpha = 0.4;
   WorldSettings settings = undamped(dt);
@@ -87,7 +87,8 @@ TEST_P(DampedRebound, HeightIsThatOfTheExactAndOfTheDiscreteMotion) {
 
   const double s = mass * kGravity / kn, share = std::pow((1 - alpha) / (1 + alpha), 2);
   const double impact_speed = std::sqrt(2 * (1 - alpha) * kGravity * height);
-  // The half step of shift costs v dt / 2 of height at the start of the fall and as much at the start of the rise.
+  // The half step of shift costs v dt / 2 of height at the start of the fall and as much at the start of the
+  // rise.
   EXPECT_NEAR(top, share * (height + 0.5 * s) - 0.5 * s, impact_speed * dt);
 }
 
@@ -99,9 +100,9 @@ TEST(DampedReboundShare, ThesisNumbers) {
   EXPECT_NEAR(std::pow(0.48 / 1.52, 2), 0.100, 5e-4);
 }
 
-// Dashpot in parallel with the spring and no tension (Schwager & Poeschel, Granular Matter 9, 2007): the contact ends where the force is
-// zero, and e = exp(-b / sqrt(1 - b^2) (pi - atan(2 b sqrt(1 - b^2) / (1 - 2 b^2)))), b < 1 / sqrt(2).
-// The dashpot sees the velocity half a step late: relative error of order b w dt.
+// Dashpot in parallel with the spring and no tension (Schwager & Poeschel, Granular Matter 9, 2007): the
+// contact ends where the force is zero, and e = exp(-b / sqrt(1 - b^2) (pi - atan(2 b sqrt(1 - b^2) / (1 - 2
+// b^2)))), b < 1 / sqrt(2). The dashpot sees the velocity half a step late: relative error of order b w dt.
 class DashpotRebound : public testing::TestWithParam<double> {};
 
 TEST_P(DashpotRebound, RestitutionIsThatOfTheTensionFreeOscillator) {

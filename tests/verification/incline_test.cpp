@@ -21,8 +21,9 @@ NewSphere ball_at_rest(const Material& m) {
   return ball({0, 0, kRadius - overlap}, kRadius);
 }
 
-// Acceleration along x by second differences of the place over two spans: the undamped springs of shear and rolling swing about the mean
-// motion with amplitude a / w^2, which leaves 4 a / (w span)^2 in the quotient, and a constant velocity drops out.
+// Acceleration along x by second differences of the place over two spans: the undamped springs of shear and
+// rolling swing about the mean motion with amplitude a / w^2, which leaves 4 a / (w span)^2 in the quotient,
+// and a constant velocity drops out.
 double acceleration(RockWorld& world, double span) {
   double x[3];
   for (int k = 0; k < 3; ++k) {
@@ -41,14 +42,16 @@ TEST(Incline, BallStaysAtRestBelowTheRollingLimit) {
   const Vec3 settled = place_of(world, 0);
   world.advance_to(5.0);
   EXPECT_LT((place_of(world, 0) - settled).norm(), 1e-9 * kRadius);
-  // Loaded at once, springs reach twice their deflection of rest at most; slipping of the rolling spring adds as much.
+  // Loaded at once, springs reach twice their deflection of rest at most; slipping of the rolling spring adds
+  // as much.
   const double deflection = 2 * ball_mass(world.settings().material, kRadius) * kGravity * std::sin(kTilt) *
                             world.settings().material.stiffness_ratio /
                             wall_stiffness(world.settings().material, kRadius);
   EXPECT_LT(settled.x(), 4 * deflection);
 }
 
-// Without local damping: it takes alpha |F| of forces that swing about a small mean, and would hold the ball by itself.
+// Without local damping: it takes alpha |F| of forces that swing about a small mean, and would hold the ball
+// by itself.
 TEST(Incline, BallRollsJustAboveTheLimit) {
   RrlinearWorld world(incline(0));
   world.add_spheres({ball_at_rest(world.settings().material)});

@@ -30,7 +30,8 @@ class MeshMaker {
 
  private:
   int vertex(const Vec3& p) {
-    const std::array<long, 3> key{std::lround(p.x() * 1e9), std::lround(p.y() * 1e9), std::lround(p.z() * 1e9)};
+    const std::array<long, 3> key{std::lround(p.x() * 1e9), std::lround(p.y() * 1e9),
+                                  std::lround(p.z() * 1e9)};
     const auto [at, is_new] = numbers_.try_emplace(key, static_cast<int>(mesh_.vertices.size()));
     if (is_new) mesh_.vertices.push_back(p);
     return at->second;
@@ -75,7 +76,8 @@ inline TriangleMesh jittered_strip(double length, double width, int nu, int nv) 
   return m.mesh();
 }
 
-/// Rows of triangles of different width side by side: corners of one row lie inside edges of the next (T-junctions).
+/// Rows of triangles of different width side by side: corners of one row lie inside edges of the next
+/// (T-junctions).
 inline TriangleMesh mismatched_strip(double length, double width, int nu, int nv) {
   MeshMaker m;
   for (int j = 0; j < nv; ++j)
@@ -86,17 +88,19 @@ inline TriangleMesh mismatched_strip(double length, double width, int nu, int nv
 /// Closed box under the same strip, its faces cut into cells.
 inline TriangleMesh fine_box(double length, double width, double depth, int nu, int nv, int nz) {
   MeshMaker m;
-  const Vec3 u(length, 0, 0), v(0, width, 0), w(0, 0, depth), low(0, -0.5 * width, -depth), high(length, 0.5 * width, 0);
-  m.patch(low + w, u, v, nu, nv);        // top
-  m.patch(low, v, u, nv, nu);            // bottom
-  m.patch(low, u, w, nu, nz);            // y low
-  m.patch(high - w, -u, w, nu, nz);      // y high
-  m.patch(low, w, v, nz, nv);            // x low
-  m.patch(high - w - v, v, w, nv, nz);   // x high
+  const Vec3 u(length, 0, 0), v(0, width, 0), w(0, 0, depth), low(0, -0.5 * width, -depth),
+      high(length, 0.5 * width, 0);
+  m.patch(low + w, u, v, nu, nv);       // top
+  m.patch(low, v, u, nv, nu);           // bottom
+  m.patch(low, u, w, nu, nz);           // y low
+  m.patch(high - w, -u, w, nu, nz);     // y high
+  m.patch(low, w, v, nz, nv);           // x low
+  m.patch(high - w - v, v, w, nv, nz);  // x high
   return m.mesh();
 }
 
-/// Two rectangles that meet along the y axis at z = 0 and fall off on both sides, interior angle `angle` (rad): a roof. Upwards is out.
+/// Two rectangles that meet along the y axis at z = 0 and fall off on both sides, interior angle `angle`
+/// (rad): a roof. Upwards is out.
 inline TriangleMesh roof(double angle, double side, double width, int nu, int nv) {
   const double slope = 0.5 * (kPi - angle);
   const Vec3 left(-side * std::cos(slope), 0, -side * std::sin(slope)), along(0, width, 0);

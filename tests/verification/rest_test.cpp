@@ -34,8 +34,9 @@ TEST(Rest, OverlapsOfAStackAreTheWeightsAbove) {
   }
 }
 
-// A sphere between two big balls that press it, ratio of radii 10 and 27. Friction has to carry the weight: 2 mu Fn = 2.2 m g here. An
-// integrator whose contact memory runs apart from the places lets it creep (Vyas et al., Computer Physics Communications 310, 2025).
+// A sphere between two big balls that press it, ratio of radii 10 and 27. Friction has to carry the weight: 2
+// mu Fn = 2.2 m g here. An integrator whose contact memory runs apart from the places lets it creep (Vyas et
+// al., Computer Physics Communications 310, 2025).
 class Held : public testing::TestWithParam<double> {};
 
 TEST_P(Held, SmallSphereBetweenTwoBigOnesDoesNotCreep) {
@@ -52,8 +53,8 @@ TEST_P(Held, SmallSphereBetweenTwoBigOnesDoesNotCreep) {
   EXPECT_LT(largest_travel(settled, world.snapshot()), 1e-4 * small);
 }
 
-// A big sphere on three small ones on a floor; the forces on a small one, from the floor and from above, stand at half the angle of the
-// line of centres: held while mu >= tan(angle / 2).
+// A big sphere on three small ones on a floor; the forces on a small one, from the floor and from above,
+// stand at half the angle of the line of centres: held while mu >= tan(angle / 2).
 TEST_P(Held, BigSphereOnThreeSmallOnesDoesNotCreep) {
   const double big = 1.0, small = big / GetParam();
   WorldSettings settings;
@@ -72,15 +73,16 @@ TEST_P(Held, BigSphereOnThreeSmallOnesDoesNotCreep) {
   add_floor(world, {0.44, 0.44});
   world.advance_to(5);
   const Snapshot settled = world.snapshot();
-  EXPECT_NEAR(settled.grains[0].position.z(), up, 3 * overlap);  // still on top: sunk by both overlaps, and what they give
+  EXPECT_NEAR(settled.grains[0].position.z(), up,
+              3 * overlap);  // still on top: sunk by both overlaps, and what they give
   world.advance_to(35);
   EXPECT_LT(largest_travel(settled, world.snapshot()), 1e-4 * small);
 }
 
 INSTANTIATE_TEST_SUITE_P(Ratios, Held, testing::Values(10.0, 27.0));
 
-// Spheres that spin, and those they touch. The law has no twisting resistance, so a sphere may spin about its contact normal for ever, and
-// turns the memory of its contacts as it does: it creeps by (spin / 2) Fs / ks.
+// Spheres that spin, and those they touch. The law has no twisting resistance, so a sphere may spin about its
+// contact normal for ever, and turns the memory of its contacts as it does: it creeps by (spin / 2) Fs / ks.
 std::vector<bool> spun(const Spheres& s) {
   std::vector<bool> out(s.size(), false);
   for (int i = 0; i < s.size(); ++i) {
@@ -130,12 +132,14 @@ TEST(Rest, HeapAtRestStaysAtRest) {
   Snapshot now = world.snapshot();
   EXPECT_EQ(world.statistics().lost_particles, 0);
   const std::vector<bool> excepted = spun(world.spheres());
-  EXPECT_LT(std::count(excepted.begin(), excepted.end(), true), 30);
+  EXPECT_LT(largest_travel(settled, now),
+            0.1 * 0.1);  // whatever spins: within a tenth of the smallest radius
   const auto drop_excepted = [&](Snapshot& shot) {
     std::erase_if(shot.grains, [&](const Grain& g) { return excepted[static_cast<std::size_t>(g.id)]; });
   };
   drop_excepted(settled);
   drop_excepted(now);
+  EXPECT_GT(now.grains.size(), 100u);
   EXPECT_LT(largest_travel(settled, now), 1e-4 * 0.1);
 }
 

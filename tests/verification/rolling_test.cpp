@@ -1,4 +1,5 @@
-// A ball pushed along a level floor. (A sliding block, v^2 / (2 mu g), cannot be made of one sphere: a sphere rolls.)
+// A ball pushed along a level floor. (A sliding block, v^2 / (2 mu g), cannot be made of one sphere: a sphere
+// rolls.)
 #include "tests/verification/scene.h"
 
 namespace scree::verification {
@@ -18,8 +19,9 @@ NewSphere pushed(const Material& m, double speed, double spin) {
   return ball({0, 0, kRadius - overlap}, kRadius, {speed, 0, 0}, {0, spin, 0});
 }
 
-// Ai et al., Powder Technology 206 (2011), test 1: r 0.5 m, m 1 kg, mu 0.3, mu_r 0.2, pushed at 1 m/s without spin: rotation has
-// ended within 1 s. The rolling resistance is a spring, so some damping is needed to end it.
+// Ai et al., Powder Technology 206 (2011), test 1: r 0.5 m, m 1 kg, mu 0.3, mu_r 0.2, pushed at 1 m/s without
+// spin: rotation has ended within 1 s. The rolling resistance is a spring, so some damping is needed to end
+// it.
 TEST(Rolling, PushedBallStops) {
   WorldSettings settings = light_ball(1e-4);
   settings.material.local_damping = 0.1;

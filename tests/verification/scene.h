@@ -1,8 +1,9 @@
 #pragma once
 // Small scenes for the verification tests.
 //
-// The integrator is leapfrog: after a run to time t the places are those of t and the velocities those of t - dt/2; the velocity a sphere
-// is added with is that of -dt/2. Tolerances of order dt below come from this shift.
+// The integrator is leapfrog: after a run to time t the places are those of t and the velocities those of t -
+// dt/2; the velocity a sphere is added with is that of -dt/2. Tolerances of order dt below come from this
+// shift.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -69,11 +70,17 @@ inline Vec3 spin_of(const RockWorld& world, std::int64_t id) {
 }
 
 /// One step of a world with a fixed step.
-inline void step(RockWorld& world) { world.advance_to(world.time() + world.settings().fixed_time_step); }
+inline void step(RockWorld& world) {
+  world.advance_to(world.time() + world.settings().fixed_time_step);
+}
 
-inline double ball_mass(const Material& m, double radius) { return m.density * 4.0 / 3.0 * kPi * std::pow(radius, 3); }
+inline double ball_mass(const Material& m, double radius) {
+  return m.density * 4.0 / 3.0 * kPi * std::pow(radius, 3);
+}
 /// kn of a sphere on a facet: pi r^2 E / r.
-inline double wall_stiffness(const Material& m, double radius) { return kPi * radius * m.effective_modulus; }
+inline double wall_stiffness(const Material& m, double radius) {
+  return kPi * radius * m.effective_modulus;
+}
 /// kn of two spheres: pi min(r)^2 E / (r1 + r2).
 inline double pair_stiffness(const Material& m, double r1, double r2) {
   const double r = std::min(r1, r2);

@@ -5,15 +5,16 @@ namespace scree::verification {
 namespace {
 
 // Runs the same ball over two meshes of the plane z = 0, step by step side by side.
-void expect_same_run(const TriangleMesh& reference, const TriangleMesh& mesh, double radius, double speed, double spin,
-                     double length) {
+void expect_same_run(const TriangleMesh& reference, const TriangleMesh& mesh, double radius, double speed,
+                     double spin, double length) {
   WorldSettings settings;
   settings.material.local_damping = 0;
   settings.material.effective_modulus = 1e6;
   const double mass = ball_mass(settings.material, radius), kn = wall_stiffness(settings.material, radius);
   settings.fixed_time_step = 0.1 * std::sqrt(mass / kn);
   const double rest = mass * kGravity / kn;
-  const NewSphere start = ball({0.1 * length, 0.013, radius - rest}, radius, {speed, 0.07 * speed, 0}, {0, spin, 0});
+  const NewSphere start =
+      ball({0.1 * length, 0.013, radius - rest}, radius, {speed, 0.07 * speed, 0}, {0, spin, 0});
   RrlinearWorld one(settings), two(settings);
   one.add_spheres({start});
   two.add_spheres({start});
@@ -52,8 +53,8 @@ class Seams : public testing::TestWithParam<Strip> {};
 
 TEST_P(Seams, RollingBallFeelsOnePlane) {
   const double speed = 2.0;
-  expect_same_run(coarse_strip(kLength, kWidth), GetParam().make(), GetParam().radius, speed, speed / GetParam().radius,
-                  kLength);
+  expect_same_run(coarse_strip(kLength, kWidth), GetParam().make(), GetParam().radius, speed,
+                  speed / GetParam().radius, kLength);
 }
 
 TEST_P(Seams, SlidingBallFeelsOnePlane) {
@@ -62,16 +63,16 @@ TEST_P(Seams, SlidingBallFeelsOnePlane) {
 
 INSTANTIATE_TEST_SUITE_P(
     Strips, Seams,
-    testing::Values(
-        Strip{"RegularFine", [] { return regular_strip(kLength, kWidth, 100, 30); }, 0.1},
-        Strip{"RegularVeryFine", [] { return regular_strip(kLength, kWidth, 200, 60); }, 0.12},
-        Strip{"RegularLarge", [] { return regular_strip(kLength, kWidth, 4, 2); }, 0.02},
-        Strip{"JitteredFine", [] { return jittered_strip(kLength, kWidth, 80, 24); }, 0.1},
-        Strip{"JitteredLarge", [] { return jittered_strip(kLength, kWidth, 6, 3); }, 0.03},
-        Strip{"MismatchedFine", [] { return mismatched_strip(kLength, kWidth, 60, 20); }, 0.1},
-        Strip{"MismatchedLarge", [] { return mismatched_strip(kLength, kWidth, 3, 4); }, 0.02},
-        Strip{"ClosedBoxFine", [] { return fine_box(kLength, kWidth, 0.5, 80, 24, 10); }, 0.1},
-        Strip{"ClosedThinBoxFine", [] { return fine_box(kLength, kWidth, 0.05, 80, 24, 2); }, 0.1}),
+    testing::Values(Strip{"RegularFine", [] { return regular_strip(kLength, kWidth, 100, 30); }, 0.1},
+                    Strip{"RegularVeryFine", [] { return regular_strip(kLength, kWidth, 200, 60); }, 0.12},
+                    Strip{"RegularLarge", [] { return regular_strip(kLength, kWidth, 4, 2); }, 0.02},
+                    Strip{"JitteredFine", [] { return jittered_strip(kLength, kWidth, 80, 24); }, 0.1},
+                    Strip{"JitteredLarge", [] { return jittered_strip(kLength, kWidth, 6, 3); }, 0.03},
+                    Strip{"MismatchedFine", [] { return mismatched_strip(kLength, kWidth, 60, 20); }, 0.1},
+                    Strip{"MismatchedLarge", [] { return mismatched_strip(kLength, kWidth, 3, 4); }, 0.02},
+                    Strip{"ClosedBoxFine", [] { return fine_box(kLength, kWidth, 0.5, 80, 24, 10); }, 0.1},
+                    Strip{"ClosedThinBoxFine", [] { return fine_box(kLength, kWidth, 0.05, 80, 24, 2); },
+                          0.1}),
     [](const auto& p) { return std::string(p.param.name); });
 
 TEST(SeamMeshes, AreWhatTheirNamesSay) {
@@ -80,7 +81,8 @@ TEST(SeamMeshes, AreWhatTheirNamesSay) {
   EXPECT_FALSE(mismatched_strip(1, 1, 4, 4).closed);
 }
 
-// A centre that is carried over the ridge of a roof at constant height has one contact: the closest point of the roof.
+// A centre that is carried over the ridge of a roof at constant height has one contact: the closest point of
+// the roof.
 class Ridge : public testing::TestWithParam<double> {};
 
 TEST_P(Ridge, OneContactAtATimeWhateverTheTriangles) {
@@ -94,7 +96,8 @@ TEST_P(Ridge, OneContactAtATimeWhateverTheTriangles) {
     // Distance from the roof: to a side while the foot lies on it, else to the ridge.
     const double ax = std::abs(x);
     const bool on_side = ax * std::cos(slope) - height * std::sin(slope) > 0;
-    const double distance = on_side ? ax * std::sin(slope) + height * std::cos(slope) : std::hypot(ax, height);
+    const double distance =
+        on_side ? ax * std::sin(slope) + height * std::cos(slope) : std::hypot(ax, height);
     if (distance >= radius) continue;
     ASSERT_EQ(a.size(), 1u) << x;
     ASSERT_EQ(b.size(), 1u) << x;
@@ -112,10 +115,12 @@ TEST_P(Ridge, MemoryGoesOverTheRidge) {
   // Along the offset surface at distance `gap`: left side, round the ridge, right side.
   std::vector<Vec3> path;
   for (double s = 0.1; s > 0; s -= 1e-3)
-    path.push_back(s * Vec3(-std::cos(slope), 0, -std::sin(slope)) + gap * Vec3(-std::sin(slope), 0, std::cos(slope)));
+    path.push_back(s * Vec3(-std::cos(slope), 0, -std::sin(slope)) +
+                   gap * Vec3(-std::sin(slope), 0, std::cos(slope)));
   for (double a = -slope; a <= slope; a += 5e-3) path.push_back(gap * Vec3(std::sin(a), 0, std::cos(a)));
   for (double s = 0; s < 0.1; s += 1e-3)
-    path.push_back(s * Vec3(std::cos(slope), 0, -std::sin(slope)) + gap * Vec3(std::sin(slope), 0, std::cos(slope)));
+    path.push_back(s * Vec3(std::cos(slope), 0, -std::sin(slope)) +
+                   gap * Vec3(std::sin(slope), 0, std::cos(slope)));
   fine.touch(path[0], radius);
   fine.slots[0].history.shear = {0, 7, 0};
   for (const Vec3& centre : path) {
@@ -152,8 +157,8 @@ TEST_P(Corner, ConcaveCornerIsTwoContacts) {
 
 INSTANTIATE_TEST_SUITE_P(Angles, Corner, testing::Values(60.0, 90.0, 120.0, 150.0));
 
-// u / r = v sqrt(4 rho / (3 E)) for any radius: at 25 m/s and E = 1 MPa the sphere is pressed 1.5 radii deep and comes back with the speed
-// it came with (no damping).
+// u / r = v sqrt(4 rho / (3 E)) for any radius: at 25 m/s and E = 1 MPa the sphere is pressed 1.5 radii deep
+// and comes back with the speed it came with (no damping).
 double rebound_speed(TriangleMesh wall, double speed, double x = 0.07, double y = 0.03) {
   WorldSettings settings = weightless(0);
   settings.time_step_safety = 0.1;
@@ -196,8 +201,8 @@ TEST(PressedThrough, FastSphereDoesNotPassAThinClosedWall) {
   EXPECT_NEAR(rebound_speed(make_box({-5, -5, -0.1}, {5, 5, 0}), 25), 25, 0.25);
 }
 
-// A sphere that starts within solid rock (its centre behind all faces) is left alone; when it comes out, it must not be shot off: kn r^2 / 2
-// would make 16.5 m/s at E = 1 MPa.
+// A sphere that starts within solid rock (its centre behind all faces) is left alone; when it comes out, it
+// must not be shot off: kn r^2 / 2 would make 16.5 m/s at E = 1 MPa.
 TEST(PressedThrough, SphereThatStartsInsideAWallIsNotShotOut) {
   WorldSettings settings = undamped(0);
   RrlinearWorld world(settings);
@@ -229,7 +234,8 @@ TEST(Channel, TwoWallsOfOneMeshAreTwoContacts) {
 }
 
 TEST(Channel, SecondWallIsTouchedFromTheSideTheSphereIsOn) {
-  const double radius = 0.5, half = 0.49;  // touches the left wall first, and still when it meets the right one
+  const double radius = 0.5,
+               half = 0.49;  // touches the left wall first, and still when it meets the right one
   MeshMaker sheet;
   sheet.patch({-half, -2, -2}, {0, 4, 0}, {0, 0, 4}, 3, 3);
   sheet.patch({half, -2, -2}, {0, 4, 0}, {0, 0, 4}, 3, 3);

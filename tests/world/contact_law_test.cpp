@@ -12,7 +12,9 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 // Contact whose pieces do not move: all rates zero, n along z.
-ContactMotion still(double overlap) { return {Vec3(0, 0, 1), overlap, Vec3::Zero(), Vec3::Zero(), 0.0, 1.0, 1e-3}; }
+ContactMotion still(double overlap) {
+  return {Vec3(0, 0, 1), overlap, Vec3::Zero(), Vec3::Zero(), 0.0, 1.0, 1e-3};
+}
 
 TEST(ContactLaw, Stiffnesses) {
   Material m;
@@ -70,7 +72,8 @@ TEST(ContactLaw, RollingIsLinearUpToItsLimitAndTwistIsFree) {
   EXPECT_NEAR(f.rolling.y(), law.mu_r * k.rbar * k.kn * 0.01, 1e-9 * k.kn);  // |Mr| = mu_r Rbar Fn
 }
 
-// A contact that turns about both axes takes its memory with it: a quarter turn in small steps keeps length and the angle to the path.
+// A contact that turns about both axes takes its memory with it: a quarter turn in small steps keeps length
+// and the angle to the path.
 TEST(ContactLaw, MemoryTurnsWithTheContactPlane) {
   Vec3 v(2, 3, 0);
   const int steps = 1000;

@@ -33,7 +33,8 @@ TEST(ImpulseWorld, BallFallsAndRestsOnTheFloor) {
   world->advance_to(0.4);
   // Semi-implicit Euler from rest: v = g t, place late by g t dt / 2.
   EXPECT_NEAR(world->snapshot().grains[0].velocity.z(), -kGravity * 0.4, 1e-6);
-  EXPECT_NEAR(world->snapshot().grains[0].position.z(), kRadius + 1 - 0.5 * kGravity * 0.16, kGravity * 0.4 * 1e-3);
+  EXPECT_NEAR(world->snapshot().grains[0].position.z(), kRadius + 1 - 0.5 * kGravity * 0.16,
+              kGravity * 0.4 * 1e-3);
   world->advance_to(3.0);
   // Bullet leaves spheres within its slop of the surface: 2 % of the radius is asked for.
   EXPECT_NEAR(world->snapshot().grains[0].position.z(), kRadius, 0.02 * kRadius);

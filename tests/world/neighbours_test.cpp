@@ -16,7 +16,8 @@ namespace {
 
 using Pair = std::pair<int, int>;
 
-// Radii from 1/27 to 1 (log-uniform) in a cube that makes them overlap here and there; the last `fixed` do not move.
+// Radii from 1/27 to 1 (log-uniform) in a cube that makes them overlap here and there; the last `fixed` do
+// not move.
 Spheres random_spheres(int count, int fixed, std::uint64_t seed) {
   Random random(seed, 0, RandomPurpose::positions);
   Spheres s;
@@ -52,7 +53,8 @@ std::set<Pair> listed_pairs(const PairList& list, int count) {
   for (int i = 0; i < list.rows(); ++i)
     for (int p = list.begin(i); p < list.end(i); ++p) {
       EXPECT_LT(i, list.partner(p));
-      EXPECT_TRUE(pairs.emplace(i, list.partner(p)).second) << "listed twice: " << i << " " << list.partner(p);
+      EXPECT_TRUE(pairs.emplace(i, list.partner(p)).second)
+          << "listed twice: " << i << " " << list.partner(p);
       if (p > list.begin(i)) {
         EXPECT_LT(list.partner(p - 1), list.partner(p));
       }
@@ -89,7 +91,9 @@ TEST(NeighbourGrid, QueryFindsEveryOverlapOfReachesOnce) {
   Random random(6, 0, RandomPurpose::positions);
   for (int round = 0; round < 5; ++round) {
     for (int i = 0; i < count; ++i)
-      grid.place(i, s.place[i].vec() + Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)) * round,
+      grid.place(i,
+                 s.place[i].vec() +
+                     Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)) * round,
                  std::min(1.0, s.place[i].w * random.uniform(1.0, 1.5)));
     if (round == 3) grid.remove(7);
     for (int i = 0; i < count; ++i) {
@@ -127,7 +131,8 @@ TEST(PairList, EveryOverlapIsListedOnceAndKeepsItsMemoryOverRepairs) {
     for (int i = 0; i < s.movable; ++i) {
       if (s.lost[i]) continue;
       const double reach = random.uniform() < 0.01 ? 1.5 : 0.02 * s.place[i].w;
-      const Vec3 move(random.uniform(-reach, reach), random.uniform(-reach, reach), random.uniform(-reach, reach));
+      const Vec3 move(random.uniform(-reach, reach), random.uniform(-reach, reach),
+                      random.uniform(-reach, reach));
       s.velocity[i].set(move);
       s.place[i].add(move);
       left = list.left_skin(i, s.place[i]) || left;

@@ -1,4 +1,5 @@
-// The explicit world as a whole: the same result for any number of threads, runaways, lost spheres, what Bullet sees.
+// The explicit world as a whole: the same result for any number of threads, runaways, lost spheres, what
+// Bullet sees.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -96,13 +97,14 @@ std::vector<std::vector<std::int64_t>> partners(const RrlinearWorld& world, std:
   for (int i = 0; i < s.size(); ++i) {
     if (s.id[i] == without) continue;
     auto& row = lists.emplace_back();
-    for (int p = world.pairs().begin(i); p < world.pairs().end(i); ++p) row.push_back(s.id[world.pairs().partner(p)]);
+    for (int p = world.pairs().begin(i); p < world.pairs().end(i); ++p)
+      row.push_back(s.id[world.pairs().partner(p)]);
   }
   return lists;
 }
 
-// A sphere at 200 m/s far away repairs its own lists. Its skin is as large as the largest sphere's radius allows and lasts at least
-// skin / (v dt) steps; nobody else is listed anew because of it.
+// A sphere at 200 m/s far away repairs its own lists. Its skin is as large as the largest sphere's radius
+// allows and lasts at least skin / (v dt) steps; nobody else is listed anew because of it.
 TEST(World, RunawayLeavesTheOthersAlone) {
   WorldSettings settings;
   settings.fixed_time_step = 2e-4;
@@ -124,7 +126,8 @@ TEST(World, RunawayLeavesTheOthersAlone) {
     places.push_back(runaway.spheres().place[i].vec());
     listed.push_back(runaway.pairs().listed_at(i));
   }
-  const std::int64_t quiet_before = quiet.statistics().list_repairs, before_repairs = runaway.statistics().list_repairs;
+  const std::int64_t quiet_before = quiet.statistics().list_repairs,
+                     before_repairs = runaway.statistics().list_repairs;
   const auto steps = runaway.statistics().steps;
   quiet.advance_to(4.2);
   runaway.advance_to(4.2);
@@ -140,7 +143,8 @@ TEST(World, RunawayLeavesTheOthersAlone) {
     ASSERT_EQ(runaway.spheres().place[i].vec(), quiet.spheres().place[i].vec());
     ASSERT_EQ(runaway.spheres().velocity[i].vec(), quiet.spheres().velocity[i].vec());
   }
-  const double moved = 200 * settings.fixed_time_step;  // m a step; a skin is at least the largest radius here
+  const double moved =
+      200 * settings.fixed_time_step;  // m a step; a skin is at least the largest radius here
   const double own = static_cast<double>(runaway.statistics().steps - steps) * moved / 0.2;
   EXPECT_LE(static_cast<double>(runaway.statistics().list_repairs - before_repairs),
             own + 1 + static_cast<double>(quiet.statistics().list_repairs - quiet_before));

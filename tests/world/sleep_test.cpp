@@ -1,0 +1,133 @@
+// Sleep: spheres at rest cost nothing until something disturbs them, and then behave as if they had been
+// awake.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/world/rrlinear_world.h"
+
+namespace scree {
+namespace {
+
+constexpr double kRadius = 0.3;
+
+NewSphere ball(const Vec3& position, const Vec3& velocity = Vec3::Zero(), double radius = kRadius) {
+  NewSphere s;
+  s.position = position;
+  s.diameter = 2 * radius;
+  s.dump = 1;
+  s.velocity = velocity;
+  return s;
+}
+
+struct Bench {
+  RrlinearWorld world;
+  int floor;
+  explicit Bench(const std::vector<NewSphere>& spheres, bool sleep = true)
+      : world([&] {
+          WorldSettings settings;
+          settings.sleep = sleep;
+          return settings;
+        }()) {
+    world.add_spheres(spheres);
+    floor = world.add_mesh(make_box({-20, -20, -2}, {20, 20, 0}), {0.4, 0.4}, Motion::fixed(Pose{}));
+  }
+  Grain grain(std::size_t id) const { return world.snapshot().grains[id]; }
+};
+
+TEST(Sleep, BallAtRestSleepsInItsPlace) {
+  Bench b({ball({0, 0, kRadius})});
+  b.world.advance_to(10);
+  EXPECT_EQ(b.world.statistics().asleep, 1);
+  const Vec3 at = b.grain(0).position;
+  b.world.advance_to(20);
+  EXPECT_EQ(b.grain(0).position, at);
+  // Overlap of rest: m g / kn = 4/3 r^2 rho g / E; it fell asleep when within 0.5 % of the radius of it.
+  const double overlap = 4.0 / 3 * kRadius * kRadius * 2760 * 9.81 / 1e6;
+  EXPECT_NEAR(at.z(), kRadius - overlap, 0.005 * kRadius);
+}
+
+TEST(Sleep, FallingBallDoesNotSleep) {
+  Bench b({ball({0, 0, 4})});
+  b.world.advance_to(0.5);
+  EXPECT_EQ(b.world.statistics().asleep, 0);
+}
+
+TEST(Sleep, BlowWakes) {
+  Bench b({ball({0, 0, kRadius})});
+  b.world.advance_to(10);
+  ASSERT_EQ(b.world.statistics().asleep, 1);
+  const double x = b.grain(0).position.x();
+  b.world.add_spheres({ball({-1.0, 0, kRadius}, {5, 0, 0})});
+  b.world.advance_to(11);
+  EXPECT_GT(b.grain(0).position.x() - x, 0.1);
+}
+
+TEST(Sleep, FloorTakenAwayWakes) {
+  Bench b({ball({0, 0, kRadius})});
+  b.world.advance_to(10);
+  ASSERT_EQ(b.world.statistics().asleep, 1);
+  b.world.remove_mesh(b.floor);
+  b.world.advance_to(11);
+  EXPECT_NEAR(b.grain(0).velocity.z(), -0.6 * 9.81, 0.1);  // (1 - alpha) g t
+}
+
+TEST(Sleep, FloorThatMovesWakes) {
+  Bench b({ball({0, 0, kRadius})});
+  b.world.advance_to(10);
+  ASSERT_EQ(b.world.statistics().asleep, 1);
+  const double z = b.grain(0).position.z();
+  b.world.set_mesh_motion(b.floor, Motion({{10.0, Pose{}}, {12.0, Pose{{0, 0, 1}, Quaternion::Identity()}}}));
+  b.world.advance_to(14);
+  EXPECT_NEAR(b.grain(0).position.z() - z, 1.0, 0.005 * kRadius);
+}
+
+// Chain of causes: the lower one of two is knocked out, the upper one falls.
+TEST(Sleep, LossOfASupportWakes) {
+  Bench b({ball({0, 0, kRadius}), ball({0, 0, 3 * kRadius})});
+  b.world.advance_to(10);
+  ASSERT_EQ(b.world.statistics().asleep, 2);
+  b.world.add_spheres({ball({-2, 0, kRadius}, {15, 0, 0})});
+  b.world.advance_to(20);
+  EXPECT_LT(b.grain(1).position.z(), 1.5 * kRadius);
+}
+
+// The lower one of two is pushed out of the domain for good; nothing is left hanging.
+TEST(Sleep, SleepersWakeWhenANeighbourLeavesTheModel) {
+  WorldSettings settings;
+  settings.sleep = true;
+  settings.domain_low = {-5, -5, -5};
+  RrlinearWorld world(settings);
+  world.add_mesh(make_box({-20, -20, -2}, {20, 20, 0}), {0.4, 0.4}, Motion::fixed(Pose{}));
+  world.add_spheres({ball({-4.6, 0, kRadius}), ball({-4.6, 0, 3 * kRadius})});
+  world.advance_to(10);
+  ASSERT_EQ(world.statistics().asleep, 2);
+  world.add_spheres({ball({-3.5, 0, kRadius}, {-30, 0, 0})});
+  world.advance_to(20);
+  EXPECT_GE(world.statistics().lost_particles, 1);
+  for (const Grain& g : world.snapshot().grains) EXPECT_LT(g.position.z(), 1.5 * kRadius) << g.id;
+}
+
+// The same heap with and without sleep. A sleeper is frozen within 0.5 % of its radius a window, so a heap
+// may differ by some of these.
+TEST(Sleep, HeapIsThatOfAWorldThatNeverSleeps) {
+  std::vector<NewSphere> spheres;
+  for (int k = 0; k < 60; ++k)
+    spheres.push_back(ball(
+        {0.65 * (k % 3) + 0.01 * (k % 7), 0.65 * ((k / 3) % 3) + 0.01 * (k % 5), 0.35 + 0.65 * (k / 9)}));
+  Bench with(spheres), without(spheres, false);
+  with.world.advance_to(15);
+  without.world.advance_to(15);
+  EXPECT_GT(with.world.statistics().asleep, 50);
+  double top_with = 0, top_without = 0, mean = 0;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    top_with = std::max(top_with, with.grain(i).position.z());
+    top_without = std::max(top_without, without.grain(i).position.z());
+    mean += (with.grain(i).position.z() - without.grain(i).position.z()) / double(spheres.size());
+  }
+  EXPECT_NEAR(top_with, top_without, kRadius);
+  EXPECT_NEAR(mean, 0, 0.1 * kRadius);
+}
+
+}  // namespace
+}  // namespace scree
