@@ -46,33 +46,50 @@ struct Touch {
 
 constexpr double kSameContact = 0.5;       // cosine of the largest turn over which a contact goes on
 constexpr double kSameSide = 0.7;          // cosine within which a remembered normal tells the side of a face
+constexpr double kSamePlane = 0.5;         // of the radius: distance within which a remembered plane is that of a face
+constexpr double kBornDeep = 0.5;          // of the radius: overlap of a contact whose sphere comes out of a solid
 constexpr double kPlaneTolerance = 1e-7;   // of the radius
+
+// A contact of the step before, mesh frame.
+struct Remembered {
+  Vec3 normal;
+  double depth;  // how far the sphere reached behind the surface, m
+};
 
 // All features of one body that the sphere overlaps.
 void collect(const MeshBody& body, std::span<const FacetRef> facets, const Vec3& centre, double radius,
-             std::span<const Vec3> remembered, std::vector<Touch>& touches) {
+             std::span<const Remembered> remembered, std::vector<Touch>& touches) {
   for (const FacetRef& ref : facets) {
     const Facet& f = body.facets()[ref.facet];
     const double height = (centre - f.a).dot(f.normal);
     if (height >= radius) continue;
-    double side = 0;  // +1: the contact began in front of the face, -1: behind, 0: none remembered
-    for (const Vec3& n : remembered)
-      if (const double c = n.dot(f.normal); std::abs(c) > kSameSide) side = c > 0 ? 1.0 : -1.0;
+    // +1: the contact began in front of the face, -1: behind, 0: none remembered. Another wall of the same mesh may have the same
+    // normal, or the opposite one, but not at this distance from the centre.
+    double side = 0, nearest = kSamePlane * radius;
+    bool pressed_through = false;  // another face, that looks the other way
+    for (const Remembered& r : remembered) {
+      const double c = r.normal.dot(f.normal);
+      if (std::abs(c) <= kSameSide) continue;
+      if (c < 0 && r.depth > radius) pressed_through = true;
+      const double sign = c > 0 ? 1.0 : -1.0, off = std::abs(sign * height - (radius - r.depth));
+      if (off < nearest) nearest = off, side = sign;
+    }
     if (height <= -radius && side == 0) continue;
     const ClosestPoint closest = closest_point(centre, f);
-    if (closest.feature == Feature::face) {
+    const Vec3 away = centre - closest.point;
+    const double aside2 = away.squaredNorm() - height * height;  // a foot on the rim, straight below the centre, is one of the face
+    if (closest.feature == Feature::face || aside2 <= std::pow(kPlaneTolerance * radius, 2)) {
       if (body.mesh().closed) {
-        if (height < 0 && side <= 0) continue;
+        if (side <= 0 && (height < 0 || pressed_through)) continue;
         side = 1.0;
       } else if (side == 0) {
         side = height >= 0 ? 1.0 : -1.0;
       }
       const double overlap = radius - side * height;
-      if (overlap > 0) touches.push_back({closest.point, side * f.normal, overlap, closest.feature, ref.facet});
+      if (overlap > 0) touches.push_back({closest.point, side * f.normal, overlap, Feature::face, ref.facet});
       continue;
     }
     if (body.mesh().closed && height < 0) continue;  // the neighbour in front of which the centre lies has this feature too
-    const Vec3 away = centre - closest.point;
     const double distance = away.norm();
     if (distance >= radius || distance == 0) continue;
     touches.push_back({closest.point, away / distance, radius - distance, closest.feature, ref.facet});
@@ -104,10 +121,12 @@ int update_mesh_contacts(const std::vector<std::unique_ptr<MeshBody>>& bodies, s
     while (last < facets.size() && facets[last].body == b) ++last;
     const MeshBody& body = *bodies[b];
     const Pose& pose = body.state().pose;
-    std::array<Vec3, kMeshContactSlots> remembered;
+    std::array<Remembered, kMeshContactSlots> remembered;
     std::size_t remembered_count = 0;
     for (const MeshContact& slot : slots)
-      if (slot.body == b) remembered[remembered_count++] = pose.rotation.conjugate() * slot.normal;
+      if (slot.body == b) {
+        remembered[remembered_count++] = {pose.rotation.conjugate() * slot.normal, slot.overlap + slot.excess};
+      }
 
     touches.clear();
     accepted.clear();
@@ -133,9 +152,11 @@ int update_mesh_contacts(const std::vector<std::unique_ptr<MeshBody>>& bodies, s
       if (best >= 0) {
         goes_on[best] = true;
         slots[best].normal = normal;
-        slots[best].overlap = touch.overlap;
+        slots[best].excess = std::min(slots[best].excess, touch.overlap);
+        slots[best].overlap = touch.overlap - slots[best].excess;
       } else if (fresh_count < kMeshContactSlots) {
-        fresh[fresh_count++].contact = {b, normal, touch.overlap, {}};
+        const double excess = body.mesh().closed && touch.overlap > kBornDeep * radius ? touch.overlap : 0.0;
+        fresh[fresh_count++].contact = {b, normal, touch.overlap - excess, excess, {}};
       } else {
         ++without_slot;
       }

@@ -468,7 +468,7 @@ double RrlinearWorld::stable_step(bool sleepers_too) {
 
 Energy RrlinearWorld::energy() const {
   Energy e = RockWorld::energy();
-  for (int i = 0; i < spheres_.movable; ++i)
+  for (int i = 0; i < std::min(spheres_.movable, pairs_.rows()); ++i)  // no rows before the first step
     for (int p = pairs_.begin(i); p < pairs_.end(i); ++p) {
       if (!pairs_.touching[p]) continue;
       const Quad &a = spheres_.place[i], &b = spheres_.place[pairs_.partner(p)];
