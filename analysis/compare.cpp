@@ -80,10 +80,14 @@ double simulated_value(const SeedResult& seed, const ReferenceValue& reference) 
   }
   const int count = section_count(reference), index = section_index(reference.section, count);
   if (index < 0) return nan;
-  for (const SectionTable& table : seed.sections)
-    if (static_cast<int>(table.sections.size()) == count)
-      return section_quantity(table, index, reference.quantity);
-  return nan;
+  const SectionTable* chosen = nullptr;
+  for (const SectionTable& table : seed.sections) {
+    if (static_cast<int>(table.sections.size()) != count) continue;
+    const bool its_dumps = reference.dumps > 0 && table.dumps == reference.dumps;
+    if (!chosen || its_dumps || (table.dumps > chosen->dumps && chosen->dumps != reference.dumps)) chosen = &table;
+    if (its_dumps) break;
+  }
+  return chosen ? section_quantity(*chosen, index, reference.quantity) : nan;
 }
 
 /// Bounds (min, max, lt ...) and medians are no value that a mean could be held against.

@@ -23,6 +23,7 @@ void read_table(const Json& sections, const Json& per_seed, std::vector<SeedResu
   for (std::size_t k = 0; k < seeds.size(); ++k) {
     const Json& curves = per_seed.at(k).at("tables").at(seeds[k].sections.size());
     SectionTable table;
+    table.dumps = curves.at("dumps").get<int>();
     table.sieves = curves.at("sieves_m").get<std::vector<double>>();
     table.original_passing = curves.at("original_passing").get<std::vector<double>>();
     for (const Json& s : sections) {

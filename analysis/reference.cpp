@@ -13,8 +13,8 @@ namespace scree {
 
 namespace {
 
-constexpr std::string_view header = "case,quantity,section,kind,value,std,unit,relation,source";
-constexpr std::size_t columns = 9;
+constexpr std::string_view header = "case,quantity,section,kind,value,std,unit,relation,source,dumps";
+constexpr std::size_t columns = 10;
 
 std::vector<std::string> split(std::string_view line) {
   std::vector<std::string> fields;
@@ -86,6 +86,11 @@ std::vector<ReferenceValue> read_reference(const std::filesystem::path& file) {
     if (!fields[5].empty()) {
       row.std = number(fields[5]);
       if (!row.std || *row.std < 0) fail(fmt::format("std '{}' is no number of 0 or more", fields[5]));
+    }
+    if (!fields[9].empty()) {
+      const auto dumps = number(fields[9]);
+      if (!dumps || *dumps < 1 || *dumps != std::floor(*dumps)) fail(fmt::format("dumps '{}' is no number of 1 or more", fields[9]));
+      row.dumps = static_cast<int>(*dumps);
     }
     values.push_back(std::move(row));
   }

@@ -181,7 +181,10 @@ std::string section_tables(const RunResult& result) {
     if (table == 0)
       out +=
           "<h2>Sections of the slope</h2>\n<p>Sections have equal height; the first lies at the crest.</p>\n";
-    out += fmt::format("<h3>{} sections</h3>\n", section_layout(result, table)->sections.size());
+    const SectionTable& layout = *section_layout(result, table);
+    const bool finished = layout.dumps == section_layout(result, 0)->dumps;
+    out += fmt::format("<h3>{} sections{}</h3>\n", layout.sections.size(),
+                       finished ? std::string() : fmt::format(", after load {}", layout.dumps));
     out +=
         "<div class=\"wide\"><table><thead><tr><th class=\"word\">Section</th><th>x/L</th><th>mass "
         "(t)</th><th>χ</th>"

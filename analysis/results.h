@@ -45,6 +45,7 @@ struct ReferenceValue {
   std::string unit;
   std::string relation;     ///< eq, approx, lt, gt, ...
   std::string source;       ///< table or line of the source
+  int dumps = 0;            ///< number of dumps in the pile it was read from; 0: not stated
 };
 
 /// A simulated value held against a printed one.
@@ -66,10 +67,11 @@ struct RunResult {
   double wall_seconds = 0;              ///< of the whole command
 };
 
-/// Reads assets/reference/results.csv (case,quantity,section,kind,value,std,unit,relation,source).
+/// Reads assets/reference/results.csv (case,quantity,section,kind,value,std,unit,relation,source,dumps).
 std::vector<ReferenceValue> read_reference(const std::filesystem::path& file);
 
-/// Holds a run against reference cases; a quantity of the wrong number of sections is compared with the table that has it.
+/// Holds a run against reference cases. A value of a section is compared with the table of its number of sections; where several have it,
+/// with that of its number of dumps, or else of the finished pile.
 std::vector<Comparison> compare_with_reference(const std::vector<SeedResult>& seeds,
                                                const std::vector<ReferenceValue>& reference,
                                                const std::vector<std::string>& cases);

@@ -50,6 +50,7 @@ struct SectionTable {
   std::vector<double> original_passing;
   double d0_log = 0, dcq_log = 0;      ///< mean log10 d of the original and of its coarsest quartile
   double mass_outside = 0;             ///< kg above the crest or outside the slope
+  int dumps = 0;                       ///< dumps in the pile; 0: not known
 };
 
 /// Cuts the slope into `n` slices of equal height between `crest_height` (S1) and 0 (Sn) and analyses each

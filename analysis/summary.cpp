@@ -54,6 +54,7 @@ Json passing_curves(const SectionTable& table) {
   Json sections = Json::array();
   for (const Section& section : table.sections) sections.push_back(section.passing);
   return {{"n", table.sections.size()},
+          {"dumps", table.dumps},
           {"mass_outside_t", number(table.mass_outside / 1000)},
           {"sieves_m", table.sieves},
           {"original_passing", table.original_passing},
@@ -183,7 +184,9 @@ void write_summary(const RunResult& result, const std::filesystem::path& file) {
   for (const Comparison& row : result.comparison) rows.push_back(comparison(row));
   for (std::size_t table = 1; table < table_count(result); ++table)
     further.push_back(
-        {{"n", section_layout(result, table)->sections.size()}, {"sections", section_list(result, table)}});
+        {{"n", section_layout(result, table)->sections.size()},
+                       {"dumps", section_layout(result, table)->dumps},
+                       {"sections", section_list(result, table)}});
 
   Json out = {{"title", result.title},
               {"scenario", result.scenario},
@@ -217,14 +220,14 @@ void write_summary(const RunResult& result, const std::filesystem::path& file) {
 }
 
 void write_sections_csv(const RunResult& result, const std::filesystem::path& file) {
-  std::string text = "seed,sections,section,x_over_l";
+  std::string text = "seed,sections,dumps,section,x_over_l";
   for (const SectionField& field : section_fields()) text += fmt::format(",{}", field.name);
   text += '\n';
   for (const SeedResult& seed : result.seeds) {
     for (const SectionTable& table : seed.sections) {
       for (const Section& section : table.sections) {
         text +=
-            fmt::format("{},{},{},{:.6g}", seed.seed, table.sections.size(), section.name, section.x_over_l);
+            fmt::format("{},{},{},{},{:.6g}", seed.seed, table.sections.size(), table.dumps, section.name, section.x_over_l);
         for (const SectionField& field : section_fields()) {
           const double value = field.value(section);
           text += std::isfinite(value) ? fmt::format(",{:.6g}", value) : ",";

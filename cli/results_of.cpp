@@ -36,15 +36,20 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
     // What is not yet dumped when the user ends a run is in the container, not in the pile.
     int last = 0;
     for (const Grain& g : r.final_state.grains) last = std::max(last, g.dump);
-    std::vector<Grain> dumped;
-    for (const Grain& g : r.original)
-      if (g.dump <= last) dumped.push_back(g);
-    if (!dumped.empty()) {
-      r.sections.push_back(
-          analyse_sections(r.final_state.grains, dumped, dump->bench.height, scenario.output.sections));
-      for (const int n : scenario.output.further_sections)
-        r.sections.push_back(analyse_sections(r.final_state.grains, dumped, dump->bench.height, n));
-    }
+    const auto add_tables = [&](const std::vector<Grain>& pile, int dumps) {
+      std::vector<Grain> dumped;
+      for (const Grain& g : r.original)
+        if (g.dump <= dumps) dumped.push_back(g);
+      if (dumped.empty()) return;
+      std::vector<int> numbers{scenario.output.sections};
+      numbers.insert(numbers.end(), scenario.output.further_sections.begin(), scenario.output.further_sections.end());
+      for (const int n : numbers) {
+        r.sections.push_back(analyse_sections(pile, dumped, dump->bench.height, n));
+        r.sections.back().dumps = dumps;
+      }
+    };
+    add_tables(r.final_state.grains, last);
+    for (const RunOutcome::AfterDump& after : outcome.after_dumps) add_tables(after.pile.grains, after.dump);
     r.profile = slope_profile(r.final_state.grains);
     r.slope_angle = slope_angle(r.profile, dump->bench.height);
   } else if (!r.final_state.grains.empty()) {

@@ -23,14 +23,17 @@ QUANTITIES = {'chi': 'chi', 'd10': 'd10', 'd50': 'd50', 'd80': 'd80', 'd10_rel':
 UNITS = {'mm': ('m', 1e-3), 'cm': ('m', 1e-2), 'm': ('m', 1), 't': ('t', 1), 'pct': ('-', 1e-2), '-': ('-', 1),
          'deg': ('deg', 1)}
 SECTION = re.compile(r'S\d|top|middle|bottom|whole')
-COLUMNS = ['case', 'quantity', 'section', 'kind', 'value', 'std', 'unit', 'relation', 'source']
+COLUMNS = ['case', 'quantity', 'section', 'kind', 'value', 'std', 'unit', 'relation', 'source', 'dumps']
+# Cases of chapter 5 under their names in simulation_cases.csv.
+SIMULATED_AS = {'cm_field_3sec': 'validation_CM', 'qb_field_5sec': 'validation_QB'}
 
 
 class Results:
     """One row a (case, quantity, section, kind, relation); of repeats the first with a deviation stays."""
 
-    def __init__(self):
+    def __init__(self, dumps):
         self.rows = {}
+        self.dumps = dumps  # simulated case -> number of dumps
 
     def add(self, case, quantity, section, kind, value, std, unit, relation, source):
         unit, factor = UNITS[unit]
@@ -40,7 +43,7 @@ class Results:
             return
         number = lambda x: '' if x is None else '%.6g' % (x * factor)
         self.rows[key] = dict(zip(COLUMNS, (case, quantity, section, kind, number(value), number(std), unit, relation,
-                                            source)))
+                                            source, self.dumps.get(SIMULATED_AS.get(case, case), '') if kind == 'pfc3d' else '')))
 
 
 def rows(folder, name):
@@ -125,7 +128,7 @@ def main():
         sys.exit(__doc__)
     tables = pathlib.Path(sys.argv[1])
     output = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else pathlib.Path(__file__).resolve().parent
-    out = Results()
+    out = Results({r['case']: r['dumps'] for r in rows(tables, 'simulation_cases.csv')})
     for part in (profiles, cm_field, laboratory, repose):
         part(tables, out)
     with open(output / 'results.csv', 'w', newline='') as stream:

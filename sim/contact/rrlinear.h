@@ -45,8 +45,8 @@ struct ContactStiffness {
 };
 
 inline ContactStiffness ball_ball(const ContactLaw& law, double r1, double r2) {
-  const double r = std::min(r1, r2), length = r1 + r2, rbar = r1 * r2 / length;
-  const double kn = law.modulus_pi * r * r / length, ks = kn * law.inverse_stiffness_ratio;
+  const double r = std::min(r1, r2), per_length = 1.0 / (r1 + r2), rbar = r1 * r2 * per_length;
+  const double kn = law.modulus_pi * r * r * per_length, ks = kn * law.inverse_stiffness_ratio;
   return {kn, ks, ks * rbar * rbar, rbar};
 }
 

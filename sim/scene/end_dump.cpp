@@ -113,6 +113,7 @@ RunOutcome run_end_dump(const Scenario& scenario, const EndDump& e, std::uint64_
     if (e.truck.release == Release::hoist) world.remove_mesh(gate);
     if (!stage.advance(kBedLeaves, "truck leaves", share + 0.95 * part, share + part)) return stage.finish();
     if (!stage.advance_to_rest("truck leaves", share + part, share + part)) return stage.finish();
+    stage.dump_done(dump, e.dumps);
   }
   return stage.finish();
 }

@@ -35,6 +35,11 @@ struct RunHooks {
 /// What a run ends with.
 struct RunOutcome {
   Snapshot final_state;
+  struct AfterDump {
+    int dump;
+    Snapshot pile;
+  };
+  std::vector<AfterDump> after_dumps;  ///< the piles asked for in output.after_dumps, but for the last
   std::vector<Grain> original;      ///< every grain as generated
   std::int64_t fixed_balls = 0;
   WorldStatistics statistics;

@@ -99,9 +99,10 @@ struct Numerics {
 
 /// A row of `compare`: against which of the reference cases in assets/reference the result is held.
 struct OutputSpec {
-  double frame_interval = 0.5;         ///< s of simulated time between frames of the trajectory; 0: only the last
+  double frame_interval = 1.0;         ///< s of simulated time between frames of the trajectory; 0: only the last
   int sections = 6;
   std::vector<int> further_sections;   ///< other numbers of sections to analyse beside, for example 3
+  std::vector<int> after_dumps;        ///< also analyse the pile after these dumps
   bool trajectory = true;
 };
 

@@ -174,6 +174,8 @@ Fields keys(OutputSpec& o) {
        "Number of sections the pile is cut into for its gradings."},
       {"further_sections", Integers{&o.further_sections, {1, 100}, {0, 20}},
        "Other numbers of sections to analyse beside."},
+      {"after_dumps", Integers{&o.after_dumps, {1, 500}, {0, 100}},
+       "Dumps after which the pile is analysed too, beside the end."},
       {"trajectory", Boolean{&o.trajectory}, "Whether the trajectory is written."},
   };
 }

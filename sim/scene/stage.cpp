@@ -130,6 +130,12 @@ bool Stage::advance_to_rest(const char* stage, double share_now, double share_th
   }
 }
 
+void Stage::dump_done(int dump, int dumps) {
+  const auto& asked = scenario_.output.after_dumps;
+  if (dump < dumps && std::find(asked.begin(), asked.end(), dump) != asked.end())
+    outcome_.after_dumps.push_back({dump, world_->snapshot()});
+}
+
 RunOutcome Stage::finish() {
   outcome_.final_state = world_->snapshot();
   if (hooks_.frame) hooks_.frame(outcome_.final_state, world_->statistics().steps);

@@ -9,8 +9,8 @@ namespace scree {
 
 void NeighbourGrid::reset(int count, double min_reach, double max_reach) {
   assert(min_reach > 0 && max_reach >= min_reach);
-  cell_.assign(1, 2.0 * min_reach);
-  while (cell_.back() < 2.0 * max_reach) cell_.push_back(2.0 * cell_.back());
+  cell_.assign(1, kCellReaches * min_reach);
+  while (cell_.back() < kCellReaches * max_reach) cell_.push_back(2.0 * cell_.back());
   levels_ = static_cast<int>(cell_.size());
   inverse_cell_.clear();
   for (const double c : cell_) inverse_cell_.push_back(1.0 / c);
@@ -50,7 +50,7 @@ void NeighbourGrid::unlink(Table& table, std::int32_t entry) {
 void NeighbourGrid::place(int i, const Vec3& position, double reach) {
   assert(reach <= max_reach() * (1 + 1e-12));
   int level = 0;
-  while (level + 1 < levels_ && cell_[level] < 2.0 * reach) ++level;
+  while (level + 1 < levels_ && cell_[level] < kCellReaches * reach) ++level;
   const int before = level_[i];
   for (int l = 0; l < levels_; ++l) {
     const std::int32_t entry = i * levels_ + l;

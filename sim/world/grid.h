@@ -1,8 +1,8 @@
 #pragma once
 // Levels of hashed cells for spheres of very different size.
 //
-// A sphere with reach r (radius plus skin) lives on the level whose cells are the smallest of width >= 2 r; cells double from level to
-// level. Every level has two tables of cells: `own` holds the spheres of that level, `finer` all those of finer
+// A sphere with reach r (radius plus skin) lives on the level whose cells are the smallest of width >= kCellReaches r; cells double from
+// level to level. Every level has two tables of cells: `own` holds the spheres of that level, `finer` all those of finer
 // levels. A query of a sphere on level a looks into own and finer of level a, and into own of every coarser level: with cells of
 // the larger partner's size this is some ten cells a level, whatever the ratio of the sizes.
 // Insertion, removal and query touch only the sphere's own cells, so that one fast sphere costs nobody else anything.
@@ -16,9 +16,12 @@ namespace scree {
 
 class NeighbourGrid {
  public:
+  /// Width of a cell over the largest reach on its level: wider cells are fewer to visit, with more spheres in each.
+  static constexpr double kCellReaches = 2.0;
+
   /// Empties the grid; spheres will be numbered 0 to count - 1 and have reaches from min_reach to max_reach (m).
   void reset(int count, double min_reach, double max_reach);
-  double max_reach() const { return 0.5 * cell_.back(); }
+  double max_reach() const { return cell_.back() / kCellReaches; }
   /// Puts sphere i at a place, moving it if it is there already. reach <= max_reach().
   void place(int i, const Vec3& position, double reach);
   void remove(int i);
@@ -84,8 +87,8 @@ void NeighbourGrid::query(int i, Visit&& visit) const {
   const Vec3& x = position_[i];
   const double r = reach_[i];
   const int a = level_[i];
-  visit_cells(finer_[a], a, x, r + 0.25 * cell_[a], i, visit);
-  for (int b = a; b < levels_; ++b) visit_cells(own_[b], b, x, r + 0.5 * cell_[b], i, visit);
+  visit_cells(finer_[a], a, x, r + 0.5 / kCellReaches * cell_[a], i, visit);
+  for (int b = a; b < levels_; ++b) visit_cells(own_[b], b, x, r + cell_[b] / kCellReaches, i, visit);
 }
 
 }  // namespace scree

@@ -45,6 +45,8 @@ void PairList::rebuild(const Spheres& s, const std::vector<int>& order, double h
     }
   std::sort(kept.begin(), kept.end(), [](const Kept& a, const Kept& b) { return a.key < b.key; });
   const std::vector<ContactHistory> old_history = history;
+  const std::vector<Vec3> old_rest_force = rest_force;
+  const std::vector<std::uint8_t> old_rest_known = rest_known;
 
   double min_radius = std::numeric_limits<double>::max(), max_radius = 0;
   for (int i = 0; i < n; ++i) {
@@ -80,10 +82,12 @@ void PairList::rebuild(const Spheres& s, const std::vector<int>& order, double h
     assert(at != row_end && *at == other);
     const auto p = static_cast<std::size_t>(at - partner_.begin());
     touching[p] = 1;
-    // Shear acts on piece 1, so it changes sign with the order of the pieces; so does the rolling moment.
+    // Forces and moments act on piece 1, so they change sign with the order of the pieces.
     const double sign = k.swapped ? -1.0 : 1.0;
     history[p].shear = sign * old_history[k.pair].shear;
     history[p].rolling = sign * old_history[k.pair].rolling;
+    rest_force[p] = sign * old_rest_force[k.pair];
+    rest_known[p] = old_rest_known[k.pair];
   }
 }
 
@@ -94,7 +98,7 @@ const std::vector<int>& PairList::repair(const Spheres& s, double horizon) {
   for (int i = 0; i < s.movable; ++i) {
     if (s.lost[i] || s.asleep[i]) continue;
     const Vec3& at = grid_.position(i);
-    if ((s.place[i].vec() - at).squaredNorm() > 0.25 * skin2_[i]) listed_.push_back(i);
+    if ((s.place[i].vec() - at).squaredNorm() > 0.5 * skin2_[i]) listed_.push_back(i);
   }
   for (const int i : listed_) list_anew(i, s, horizon);
   for (const int i : dropped_) listed_.push_back(i);

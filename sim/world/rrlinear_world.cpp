@@ -13,6 +13,7 @@ namespace scree {
 namespace {
 
 constexpr int kStepsBetweenChecks = 20;   // of the stable step, of lost and runaway spheres
+constexpr int kStepsBetweenSorts = 400;   // after which neighbours in space are neighbours in memory again
 constexpr double kSkinHorizon = 20.0;     // steps that a sphere's skin should last
 constexpr double kToolSkin = 0.5;         // of the smallest radius: how far a tool moves before facets are listed anew
 constexpr double kNearGap = 0.05;         // of the smaller radius: gap below which a contact is expected (stable step)
@@ -63,6 +64,10 @@ void RrlinearWorld::sphere_lost(int index) {
 void RrlinearWorld::advance_to(double end) {
   if (changed_) prepare();
   while (time_ < end) {
+    if (statistics_.steps >= next_sort_) {
+      next_sort_ = statistics_.steps + kStepsBetweenSorts;
+      prepare();
+    }
     if (steps_to_check_-- <= 0) {
       steps_to_check_ = kStepsBetweenChecks;
       check_spheres();
@@ -115,8 +120,11 @@ void RrlinearWorld::prepare() {
   list_facets(all, true);
   find_watched();
   for (int i = 0; i < n; ++i) bereft[i] |= watched_[i];
-  total_force_.assign(n, {});
-  sleep_.restart(spheres_, pairs_, bereft, law_, time_, settings_.gravity.norm());
+  std::vector<Quad> total_force(n);
+  for (int k = 0; k < n; ++k)
+    if (order[k] < static_cast<int>(total_force_.size())) total_force[k] = total_force_[order[k]];
+  total_force_.swap(total_force);
+  sleep_.renumber(order, spheres_, pairs_, bereft, time_, settings_.gravity.norm());
   own_step2_.assign(spheres_.movable, 0.0);
   dt_ = stable_step(true);
   steps_to_check_ = 0;
@@ -239,7 +247,8 @@ double RrlinearWorld::pair_forces(int first, int last) {
       }
       pairs_.touching[p] = 1;
       const double d = std::sqrt(d2);
-      const Vec3 n = d > 0 ? Vec3(dx / d, dy / d, dz / d) : Vec3(0, 0, 1);
+      const double per_d = 1.0 / d;
+      const Vec3 n = d > 0 ? Vec3(dx * per_d, dy * per_d, dz * per_d) : Vec3(0, 0, 1);
       const double overlap = reach - d;
       const double arm1 = pi.w - 0.5 * overlap, arm2 = pj.w - 0.5 * overlap;
       const Vec3 vj = velocity[j].vec(), wj = spin[j].vec();

@@ -69,6 +69,7 @@ class RrlinearWorld final : public RockWorld {
   double dt_ = 0;            // stable step, s
   double last_dt_ = 0;       // the step that led to the present places, s
   int steps_to_check_ = 0;
+  std::int64_t next_sort_ = 0;  // step
   PairList pairs_;
   std::vector<Quad> incoming_force_, incoming_torque_;  // from contacts in which the sphere is partner
   std::vector<Quad> total_force_;                       // of all contacts in the last step, N; w: their number

@@ -31,30 +31,38 @@ double wake_limit2(int i, const Spheres& s, const PairList& pairs, const Contact
 
 }  // namespace
 
-void Sleep::restart(Spheres& s, PairList& pairs, const std::vector<std::uint8_t>& awake, const ContactLaw& law,
-                    double time, double gravity) {
+void Sleep::renumber(const std::vector<int>& order, Spheres& s, PairList& pairs, const std::vector<std::uint8_t>& awake,
+                     double time, double gravity) {
   const int n = s.movable;
   double smallest = 1e300;
   for (int i = 0; i < n; ++i) smallest = std::min(smallest, s.place[i].w);
   window_ = gravity > 0 && n > 0 ? kWindow * std::sqrt(smallest / gravity) : 1e300;
-  window_end_ = time + window_;
-  window_start_.resize(n);
-  for (int i = 0; i < n; ++i) window_start_[i] = s.place[i].vec();
-  quiet_windows_.assign(n, 0);
-  disturbed_.assign(n, 0);
-  any_disturbed_ = false;
-  row_active_.assign(s.size(), 1);
+  if (window_start_.empty()) window_end_ = time + window_;
+
+  const int known = static_cast<int>(window_start_.size());
+  std::vector<Vec3> start(n);
+  std::vector<std::uint8_t> quiet(n, 0);
+  std::vector<double> tolerance2(n, 0.0);
   asleep_ = 0;
-  tolerance2_.assign(n, 0.0);
   for (int i = 0; i < n; ++i) {
+    const int old = order[i];
+    start[i] = old < known ? window_start_[old] : s.place[i].vec();
+    if (old < known) quiet[i] = quiet_windows_[old], tolerance2[i] = tolerance2_[old];
     if (!s.asleep[i]) continue;
     if (awake[i]) {
       s.asleep[i] = 0;
-      continue;
+      quiet[i] = 0;
+      forget_rest(i, pairs);
+    } else {
+      ++asleep_;
     }
-    ++asleep_;
-    tolerance2_[i] = wake_limit2(i, s, pairs, law, gravity);
   }
+  window_start_.swap(start);
+  quiet_windows_.swap(quiet);
+  tolerance2_.swap(tolerance2);
+  disturbed_.assign(n, 0);
+  any_disturbed_ = false;
+  row_active_.assign(s.size(), 1);
   mark_rows(s, pairs);
 }
 

@@ -18,9 +18,10 @@ class Sleep {
   explicit Sleep(bool on) : on_(on) {}
   bool on() const { return on_; }
 
-  /// After spheres were re-sorted or added: forgets the windows that were running. `awake[i]`: must not sleep.
-  void restart(Spheres& spheres, PairList& pairs, const std::vector<std::uint8_t>& awake, const ContactLaw& law,
-               double time, double gravity);
+  /// After spheres were re-sorted or added: `order[k]` is the old index of sphere k; what is known of it follows. `awake[i]`: must
+  /// not sleep.
+  void renumber(const std::vector<int>& order, Spheres& spheres, PairList& pairs, const std::vector<std::uint8_t>& awake,
+                double time, double gravity);
   /// Lists which rows of the pair list have anything to compute; after the lists were repaired.
   void mark_rows(const Spheres& spheres, const PairList& pairs);
   bool row_active(int i) const { return row_active_[i] != 0; }

@@ -89,19 +89,21 @@ TEST(Reference, EachValueStandsOnce) {
 
 TEST(Reference, MalformedLineIsNamed) {
   const auto file = std::filesystem::path(testing::TempDir()) / "scree_bad_reference.csv";
-  const std::string header = "case,quantity,section,kind,value,std,unit,relation,source\n";
+  const std::string header = "case,quantity,section,kind,value,std,unit,relation,source,dumps\n";
   const std::map<std::string, std::string> bad{
       {"", ":1: "},
       {"a,b\n", ":1: "},
-      {header + "A1,chi,S1,pfc3d,1,,-,eq\n", ":2: "},
-      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,x\n", ":2: "},
-      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1\nA1,chi,S1,pfc3d,one,,-,eq,C.1\n", ":3: "},
-      {header + "A1,chi,S1,pfc3d,,,-,eq,C.1\n", ":2: "},
-      {header + "A1,chi,S1,pfc3d,1,-0.1,-,eq,C.1\n", ":2: "},
-      {header + "A1,chi,S1,guess,1,,-,eq,C.1\n", ":2: "},
-      {header + "A1,d50,S1,pfc3d,1,,mm,eq,C.1\n", ":2: "},
-      {header + "A1,chi,S1,pfc3d,1,,-,equals,C.1\n", ":2: "},
-      {header + ",chi,S1,pfc3d,1,,-,eq,C.1\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,,x\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,\nA1,chi,S1,pfc3d,one,,-,eq,C.1,\n", ":3: "},
+      {header + "A1,chi,S1,pfc3d,,,-,eq,C.1,\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,-0.1,-,eq,C.1,\n", ":2: "},
+      {header + "A1,chi,S1,guess,1,,-,eq,C.1,\n", ":2: "},
+      {header + "A1,d50,S1,pfc3d,1,,mm,eq,C.1,\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,equals,C.1,\n", ":2: "},
+      {header + ",chi,S1,pfc3d,1,,-,eq,C.1,\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,2.5\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,0\n", ":2: "},
   };
   for (const auto& [text, place] : bad) {
     std::ofstream(file) << text;
@@ -114,6 +116,21 @@ TEST(Reference, MalformedLineIsNamed) {
   }
   std::filesystem::remove(file);
   EXPECT_THROW(read_reference(file), std::runtime_error);
+}
+
+TEST(Compare, TakesTheTableWithTheCasesNumberOfDumps) {
+  // cm_field_3sec: three dumps in PFC3D; the measured slope states none and is held against the finished pile.
+  std::vector<SeedResult> seeds{seed_with_sections({3, 3})};
+  SectionTable &end = seeds[0].sections[0], &third = seeds[0].sections[1];
+  end.dumps = 4, third.dumps = 3;
+  end.sections[2].chi = 0.4, third.sections[2].chi = 0.3;
+  int checked = 0;
+  for (const auto& row : compare_with_reference(seeds, stored(), {"cm_field_3sec"}))
+    if (row.reference.section == "bottom" && row.reference.quantity == "chi") {
+      EXPECT_DOUBLE_EQ(row.simulated, row.reference.kind == "pfc3d" ? 0.3 : 0.4);
+      ++checked;
+    }
+  EXPECT_EQ(checked, 2);
 }
 
 TEST(Compare, TakesTheTableWithTheCasesNumberOfSections) {
