@@ -84,7 +84,8 @@ double simulated_value(const SeedResult& seed, const ReferenceValue& reference) 
   for (const SectionTable& table : seed.sections) {
     if (static_cast<int>(table.sections.size()) != count) continue;
     const bool its_dumps = reference.dumps > 0 && table.dumps == reference.dumps;
-    if (!chosen || its_dumps || (table.dumps > chosen->dumps && chosen->dumps != reference.dumps)) chosen = &table;
+    if (!chosen || its_dumps || (table.dumps > chosen->dumps && chosen->dumps != reference.dumps))
+      chosen = &table;
     if (its_dumps) break;
   }
   return chosen ? section_quantity(*chosen, index, reference.quantity) : nan;

@@ -49,7 +49,9 @@ void read_table(const Json& sections, const Json& per_seed, std::vector<SeedResu
 
 StoredRun read_summary(const std::filesystem::path& file) {
   std::ifstream in(file);
-  if (!in) throw std::runtime_error(fmt::format("{}: cannot be read; is this the folder of a finished run?", file.string()));
+  if (!in)
+    throw std::runtime_error(
+        fmt::format("{}: cannot be read; is this the folder of a finished run?", file.string()));
   StoredRun run;
   try {
     const Json json = Json::parse(in);
@@ -58,9 +60,11 @@ StoredRun read_summary(const std::filesystem::path& file) {
       run.seeds.emplace_back();
       run.seeds.back().seed = seed.get<std::uint64_t>();
     }
-    if (json.contains("sections") && !json.at("sections").empty()) read_table(json.at("sections"), json.at("per_seed"), run.seeds);
+    if (json.contains("sections") && !json.at("sections").empty())
+      read_table(json.at("sections"), json.at("per_seed"), run.seeds);
     if (json.contains("further_sections"))
-      for (const Json& table : json.at("further_sections")) read_table(table.at("sections"), json.at("per_seed"), run.seeds);
+      for (const Json& table : json.at("further_sections"))
+        read_table(table.at("sections"), json.at("per_seed"), run.seeds);
     if (json.contains("repose") && !json.at("repose").is_null()) {
       const Json& repose = json.at("repose");
       for (std::size_t k = 0; k < run.seeds.size(); ++k) {

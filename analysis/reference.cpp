@@ -89,7 +89,8 @@ std::vector<ReferenceValue> read_reference(const std::filesystem::path& file) {
     }
     if (!fields[9].empty()) {
       const auto dumps = number(fields[9]);
-      if (!dumps || *dumps < 1 || *dumps != std::floor(*dumps)) fail(fmt::format("dumps '{}' is no number of 1 or more", fields[9]));
+      if (!dumps || *dumps < 1 || *dumps != std::floor(*dumps))
+        fail(fmt::format("dumps '{}' is no number of 1 or more", fields[9]));
       row.dumps = static_cast<int>(*dumps);
     }
     values.push_back(std::move(row));

@@ -1,10 +1,11 @@
 // Readings of the repose angle.
 //
-// The thesis reads atan(H / R): H the top of the cone, R the mean over four directions of the distance from the centre to where
-// particles no longer overlap, runaways left out. Here: seen from above, a ray from the axis in each direction leaves the heap at the
-// first gap between grains. Of the readings tried (a ray; a strip of one mean or one largest diameter, in which a row of
-// touching grains counts), the ray is the literal one, and it is nearest to the printed angles at both friction values of the
-// laboratory test; a strip as wide as the largest grain follows single grains out of the heap and reads 4 to 7 degrees less.
+// The thesis reads atan(H / R): H the top of the cone, R the mean over four directions of the distance from
+// the centre to where particles no longer overlap, runaways left out. Here: seen from above, a ray from the
+// axis in each direction leaves the heap at the first gap between grains. Of the readings tried (a ray; a
+// strip of one mean or one largest diameter, in which a row of touching grains counts), the ray is the
+// literal one, and it is nearest to the printed angles at both friction values of the laboratory test; a
+// strip as wide as the largest grain follows single grains out of the heap and reads 4 to 7 degrees less.
 //
 // The other readings come from a height map of the heap seen from above.
 #include "analysis/repose_angle.h"
@@ -48,7 +49,8 @@ struct Circle {
   double x, y, radius;
 };
 
-/// How far from the axis the ray in direction (ux, uy) stays over grains: to the first gap between their circles.
+/// How far from the axis the ray in direction (ux, uy) stays over grains: to the first gap between their
+/// circles.
 double reach(const std::vector<Circle>& circles, double ux, double uy) {
   std::vector<std::array<double, 2>> covered;  // from, to
   for (const Circle& c : circles) {

@@ -6,13 +6,14 @@ namespace scree {
 
 /// Readings of the repose angle of one heap (degrees).
 struct ReposeAngle {
-  double angle = 0;           ///< thesis: atan(H / R), R the mean of four directions out to where grains no longer overlap
-  double half_coverage = 0;   ///< atan(H / R_h), R_h where half of the ring's plan area is covered
-  double slope_fit = 0;       ///< slope of the straight flank fitted to the heap's surface profile
-  double height = 0;          ///< H, top of the cone, m
-  double radius = 0;          ///< mean R, m
+  double angle =
+      0;  ///< thesis: atan(H / R), R the mean of four directions out to where grains no longer overlap
+  double half_coverage = 0;        ///< atan(H / R_h), R_h where half of the ring's plan area is covered
+  double slope_fit = 0;            ///< slope of the straight flank fitted to the heap's surface profile
+  double height = 0;               ///< H, top of the cone, m
+  double radius = 0;               ///< mean R, m
   double radii[4] = {0, 0, 0, 0};  ///< +x, +y, -x, -y
-  int runaways = 0;           ///< grains beyond R, left out
+  int runaways = 0;                ///< grains beyond R, left out
 };
 
 /// Heap on a floor at z = `floor`; the axis is found from the heap (mass-weighted median of x and y).

@@ -14,38 +14,38 @@ namespace scree {
 /// One seed of a run.
 struct SeedResult {
   std::uint64_t seed = 0;
-  std::int64_t particles = 0;           ///< movable spheres
+  std::int64_t particles = 0;  ///< movable spheres
   std::int64_t fixed_balls = 0;
-  double mass = 0;                      ///< kg put in
+  double mass = 0;  ///< kg put in
   double wall_seconds = 0, simulated_seconds = 0;
-  double particle_steps = 0;            ///< sum over steps of spheres moved
+  double particle_steps = 0;  ///< sum over steps of spheres moved
   std::int64_t steps = 0;
   double time_step_min = 0, time_step_max = 0;  ///< s
-  double largest_overlap_ratio = 0;     ///< overlap over the smaller radius
+  double largest_overlap_ratio = 0;             ///< overlap over the smaller radius
   std::int64_t lost_particles = 0;
-  double lost_mass = 0;                 ///< kg
-  bool at_rest = false;                 ///< every dump came to rest before max_time
+  double lost_mass = 0;  ///< kg
+  bool at_rest = false;  ///< every dump came to rest before max_time
   bool interrupted = false;
   Snapshot final_state;
-  std::vector<Grain> original;          ///< every grain as generated (ids, diameters, masses)
-  std::vector<SectionTable> sections;   ///< one for each number of sections asked for (end dumping)
-  std::optional<ReposeAngle> repose;    ///< repose test
+  std::vector<Grain> original;                 ///< every grain as generated (ids, diameters, masses)
+  std::vector<SectionTable> sections;          ///< one for each number of sections asked for (end dumping)
+  std::optional<ReposeAngle> repose;           ///< repose test
   std::vector<std::array<double, 2>> profile;  ///< slope profile (x, z) m: surface along the dump axis
-  std::optional<double> slope_angle;    ///< degrees, fitted to the middle of the profile
+  std::optional<double> slope_angle;           ///< degrees, fitted to the middle of the profile
 };
 
 /// A printed value of the thesis.
 struct ReferenceValue {
-  std::string case_name;    ///< A1, cm_field_3sec, lab_repose ...
-  std::string quantity;     ///< chi, d50, d50_rel, mass_t, angle
-  std::string section;      ///< S1..S6, top|middle|bottom, or whole
-  std::string kind;         ///< pfc3d | measured
+  std::string case_name;  ///< A1, cm_field_3sec, lab_repose ...
+  std::string quantity;   ///< chi, d50, d50_rel, mass_t, angle
+  std::string section;    ///< S1..S6, top|middle|bottom, or whole
+  std::string kind;       ///< pfc3d | measured
   double value = 0;
   std::optional<double> std;
   std::string unit;
-  std::string relation;     ///< eq, approx, lt, gt, ...
-  std::string source;       ///< table or line of the source
-  int dumps = 0;            ///< number of dumps in the pile it was read from; 0: not stated
+  std::string relation;  ///< eq, approx, lt, gt, ...
+  std::string source;    ///< table or line of the source
+  int dumps = 0;         ///< number of dumps in the pile it was read from; 0: not stated
 };
 
 /// A simulated value held against a printed one.
@@ -62,16 +62,16 @@ struct RunResult {
   std::string title, scenario, engine, version;
   std::vector<SeedResult> seeds;
   std::vector<Comparison> comparison;
-  std::vector<std::string> notes;       ///< warnings to the reader: overlaps above 10 %, lost mass, not at rest
-  double bench_height = 0;              ///< m, end dumping
-  double wall_seconds = 0;              ///< of the whole command
+  std::vector<std::string> notes;  ///< warnings to the reader: overlaps above 10 %, lost mass, not at rest
+  double bench_height = 0;         ///< m, end dumping
+  double wall_seconds = 0;         ///< of the whole command
 };
 
 /// Reads assets/reference/results.csv (case,quantity,section,kind,value,std,unit,relation,source,dumps).
 std::vector<ReferenceValue> read_reference(const std::filesystem::path& file);
 
-/// Holds a run against reference cases. A value of a section is compared with the table of its number of sections; where several have it,
-/// with that of its number of dumps, or else of the finished pile.
+/// Holds a run against reference cases. A value of a section is compared with the table of its number of
+/// sections; where several have it, with that of its number of dumps, or else of the finished pile.
 std::vector<Comparison> compare_with_reference(const std::vector<SeedResult>& seeds,
                                                const std::vector<ReferenceValue>& reference,
                                                const std::vector<std::string>& cases);

@@ -16,8 +16,9 @@ class PassingCurve {
   double passing(double diameter) const;
   /// Diameter (m) at a passing share; linear in log10(d) between grains.
   double diameter(double passing) const;
-  double mass() const { return mass_; }          ///< kg
-  /// Mass-weighted mean of log10(diameter): the limit of log d = sum (P_i - P_i-1) log10 sqrt(D_i D_i-1) for fine sieves.
+  double mass() const { return mass_; }  ///< kg
+  /// Mass-weighted mean of log10(diameter): the limit of log d = sum (P_i - P_i-1) log10 sqrt(D_i D_i-1) for
+  /// fine sieves.
   double mean_log_diameter() const;
   /// The same of the coarsest quartile, P_CQ = 4 P - 3 above D75.
   double coarsest_quartile_log_diameter() const;
@@ -32,31 +33,31 @@ class PassingCurve {
 
 /// One section of a slope.
 struct Section {
-  std::string name;        ///< S1 at the crest
-  double x_over_l = 0;     ///< centre, (2k - 1) / (2n)
-  double mass = 0;         ///< kg
+  std::string name;     ///< S1 at the crest
+  double x_over_l = 0;  ///< centre, (2k - 1) / (2n)
+  double mass = 0;      ///< kg
   int grains = 0;
-  double chi = 0;          ///< segregation degree; NaN when the section is empty
-  double d10 = 0, d50 = 0, d80 = 0, d90 = 0, d95 = 0;                      ///< m; NaN when empty
+  double chi = 0;                                      ///< segregation degree; NaN when the section is empty
+  double d10 = 0, d50 = 0, d80 = 0, d90 = 0, d95 = 0;  ///< m; NaN when empty
   double d10_rel = 0, d50_rel = 0, d80_rel = 0, d90_rel = 0, d95_rel = 0;  ///< over the original material's
-  double d15 = 0;          ///< m
+  double d15 = 0;                                                          ///< m
   std::vector<double> passing;  ///< shares at the sieves of SectionTable::sieves
 };
 
 /// All sections of one slope at one time.
 struct SectionTable {
   std::vector<Section> sections;
-  std::vector<double> sieves;          ///< m
+  std::vector<double> sieves;  ///< m
   std::vector<double> original_passing;
-  double d0_log = 0, dcq_log = 0;      ///< mean log10 d of the original and of its coarsest quartile
-  double mass_outside = 0;             ///< kg above the crest or outside the slope
-  int dumps = 0;                       ///< dumps in the pile; 0: not known
+  double d0_log = 0, dcq_log = 0;  ///< mean log10 d of the original and of its coarsest quartile
+  double mass_outside = 0;         ///< kg above the crest or outside the slope
+  int dumps = 0;                   ///< dumps in the pile; 0: not known
 };
 
 /// Cuts the slope into `n` slices of equal height between `crest_height` (S1) and 0 (Sn) and analyses each
-/// against `original` (every grain as dumped). Grains above the crest height are outside (counted as mass_outside).
-/// chi = (log d_section - log d_0) / (log d_CQ - log d_0), thesis chapter 3.
-SectionTable analyse_sections(const std::vector<Grain>& pile, const std::vector<Grain>& original, double crest_height,
-                              int n);
+/// against `original` (every grain as dumped). Grains above the crest height are outside (counted as
+/// mass_outside). chi = (log d_section - log d_0) / (log d_CQ - log d_0), thesis chapter 3.
+SectionTable analyse_sections(const std::vector<Grain>& pile, const std::vector<Grain>& original,
+                              double crest_height, int n);
 
 }  // namespace scree

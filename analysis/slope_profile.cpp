@@ -6,7 +6,8 @@
 
 namespace scree {
 
-std::vector<std::array<double, 2>> slope_profile(const std::vector<Grain>& pile, double half_band, double bin) {
+std::vector<std::array<double, 2>> slope_profile(const std::vector<Grain>& pile, double half_band,
+                                                 double bin) {
   std::map<long, double> top;
   for (const Grain& g : pile) {
     if (std::abs(g.position.y()) > half_band) continue;

@@ -183,8 +183,7 @@ void write_summary(const RunResult& result, const std::filesystem::path& file) {
   }
   for (const Comparison& row : result.comparison) rows.push_back(comparison(row));
   for (std::size_t table = 1; table < table_count(result); ++table)
-    further.push_back(
-        {{"n", section_layout(result, table)->sections.size()},
+    further.push_back({{"n", section_layout(result, table)->sections.size()},
                        {"dumps", section_layout(result, table)->dumps},
                        {"sections", section_list(result, table)}});
 
@@ -226,8 +225,8 @@ void write_sections_csv(const RunResult& result, const std::filesystem::path& fi
   for (const SeedResult& seed : result.seeds) {
     for (const SectionTable& table : seed.sections) {
       for (const Section& section : table.sections) {
-        text +=
-            fmt::format("{},{},{},{},{:.6g}", seed.seed, table.sections.size(), table.dumps, section.name, section.x_over_l);
+        text += fmt::format("{},{},{},{},{:.6g}", seed.seed, table.sections.size(), table.dumps, section.name,
+                            section.x_over_l);
         for (const SectionField& field : section_fields()) {
           const double value = field.value(section);
           text += std::isfinite(value) ? fmt::format(",{:.6g}", value) : ",";

@@ -14,8 +14,8 @@ namespace scree {
 /// when the file cannot be written.
 void write_summary(const RunResult& result, const std::filesystem::path& file);
 
-/// What comparison needs of a summary.json: the section tables (masses, chi, diameters) and repose angles of each seed, and the reference
-/// cases it was compared with. Throws std::runtime_error `file: what is wrong`.
+/// What comparison needs of a summary.json: the section tables (masses, chi, diameters) and repose angles of
+/// each seed, and the reference cases it was compared with. Throws std::runtime_error `file: what is wrong`.
 struct StoredRun {
   std::string title;
   std::vector<SeedResult> seeds;

@@ -11,10 +11,10 @@ enum ExitCode { kOk = 0, kFailed = 1, kBadInput = 2, kInterrupted = 130 };
 struct RunOptions {
   std::filesystem::path file;
   std::vector<std::string> overrides;
-  int seeds = 0;                  ///< 0: those of the scenario
-  int threads = 0;                ///< 0: as many as cores
-  std::filesystem::path out;      ///< empty: runs/NAME
-  bool force = false;             ///< write into a folder that is not empty
+  int seeds = 0;              ///< 0: those of the scenario
+  int threads = 0;            ///< 0: as many as cores
+  std::filesystem::path out;  ///< empty: runs/NAME
+  bool force = false;         ///< write into a folder that is not empty
 };
 
 int run_run(const RunOptions& options);

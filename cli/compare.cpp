@@ -29,7 +29,8 @@ int run_compare(const std::filesystem::path& dir, const std::vector<std::string>
     }
   const auto& chosen = cases.empty() ? run.cases : cases;
   if (chosen.empty()) {
-    fmt::print(stderr, "{}: this run was compared with no reference case; name one with --case\n", file.string());
+    fmt::print(stderr, "{}: this run was compared with no reference case; name one with --case\n",
+               file.string());
     return kBadInput;
   }
   fmt::print("{} ({} seed{})\n", run.title, run.seeds.size(), run.seeds.size() == 1 ? "" : "s");

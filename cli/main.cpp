@@ -49,25 +49,34 @@ int main(int argc, char** argv) {
   RunOptions run;
   CLI::App* run_app = app.add_subcommand("run", "Run a scenario and write its report");
   run_app->add_option("file", run.file, "Scenario file (YAML)")->required();
-  run_app->add_option("--seeds", run.seeds, "Number of seeds: those of the scenario first, then the integers that follow the last")
+  run_app
+      ->add_option("--seeds", run.seeds,
+                   "Number of seeds: those of the scenario first, then the integers that follow the last")
       ->check(CLI::Range(1, 1000));
-  run_app->add_option("--threads", run.threads, "Worker threads; default: as many as cores. The numbers do not depend on it")
+  run_app
+      ->add_option("--threads", run.threads,
+                   "Worker threads; default: as many as cores. The numbers do not depend on it")
       ->check(CLI::Range(1, 256));
-  run_app->add_option("--out", run.out, "Folder for the results; default: runs/NAME, or runs/NAME-2 ... when it exists");
-  run_app->add_option("--set", run.overrides, "Change a value: --set material.mu=0.5 (may be repeated)")->take_all();
+  run_app->add_option("--out", run.out,
+                      "Folder for the results; default: runs/NAME, or runs/NAME-2 ... when it exists");
+  run_app->add_option("--set", run.overrides, "Change a value: --set material.mu=0.5 (may be repeated)")
+      ->take_all();
   run_app->add_flag("--force", run.force, "Write into --out even if it holds something");
-  run_app->footer("\nExamples:\n  scree run scenarios/quick_dump.yaml\n"
-                  "  scree run scenarios/a1_10m.yaml --seeds 5 --out runs/a1_five --set experiment.dumps=2\n");
+  run_app->footer(
+      "\nExamples:\n  scree run scenarios/quick_dump.yaml\n"
+      "  scree run scenarios/a1_10m.yaml --seeds 5 --out runs/a1_five --set experiment.dumps=2\n");
 
   std::filesystem::path compare_dir;
   std::vector<std::string> compare_cases;
   CLI::App* compare_app = app.add_subcommand("compare", "Show a finished run beside the reference values");
   compare_app->add_option("dir", compare_dir, "Run folder")->required();
-  compare_app->add_option("--case", compare_cases, "Reference cases; default: those of the scenario")->take_all();
+  compare_app->add_option("--case", compare_cases, "Reference cases; default: those of the scenario")
+      ->take_all();
 
   std::filesystem::path validate_file;
   std::vector<std::string> validate_overrides;
-  CLI::App* validate_app = app.add_subcommand("validate", "Check a scenario file and say everything that is wrong");
+  CLI::App* validate_app =
+      app.add_subcommand("validate", "Check a scenario file and say everything that is wrong");
   validate_app->add_option("file", validate_file, "Scenario file (YAML)")->required();
   validate_app->add_option("--set", validate_overrides, "Change a value before checking")->take_all();
 
@@ -79,7 +88,8 @@ int main(int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error);
     const bool names_one = argc > 1 && argv[1][0] != '-';
     if (names_one && app.get_subcommands().empty()) {
-      fmt::print(stderr, "scree: {}: no such subcommand; there are run, compare, validate and schema\n", argv[1]);
+      fmt::print(stderr, "scree: {}: no such subcommand; there are run, compare, validate and schema\n",
+                 argv[1]);
       return kBadInput;
     }
     fmt::print(stderr, "scree: {} (see scree --help)\n", error.what());

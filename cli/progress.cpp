@@ -30,7 +30,8 @@ void ProgressDisplay::update(std::size_t seed_index, const RunProgress& progress
   const std::lock_guard lock(mutex_);
   progress_[seed_index] = progress;
   const auto now = std::chrono::steady_clock::now();
-  if (std::chrono::duration<double>(now - drawn_).count() < (terminal_ ? kTerminalInterval : kPlainInterval)) return;
+  if (std::chrono::duration<double>(now - drawn_).count() < (terminal_ ? kTerminalInterval : kPlainInterval))
+    return;
   drawn_ = now;
   draw(false);
 }
@@ -44,12 +45,16 @@ void ProgressDisplay::draw(bool last) {
     if (p.share > 0 && p.share < 1 && (shown->share == 0 || shown->share >= 1)) shown = &p;
   }
   const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  const std::string left = share > 0.02 ? "about " + spell_duration(elapsed * (1 - share) / share) + " left" : "estimating";
-  std::string where = shown->dumps > 1 ? fmt::format("load {} of {}, {}", shown->dump, shown->dumps, shown->stage) : shown->stage;
-  if (seeds_.size() > 1) where += fmt::format(", seed {}", seeds_[static_cast<std::size_t>(shown - progress_.data())]);
-  const std::string text = fmt::format("{:3.0f} %  {}  {}  t = {:.1f} s  {} spheres  {:.1f} M steps/s", 100 * share,
-                                       last ? spell_duration(elapsed) : left, where, shown->time, shown->particles,
-                                       steps / std::max(elapsed, 1e-3) / 1e6);
+  const std::string left =
+      share > 0.02 ? "about " + spell_duration(elapsed * (1 - share) / share) + " left" : "estimating";
+  std::string where = shown->dumps > 1
+                          ? fmt::format("load {} of {}, {}", shown->dump, shown->dumps, shown->stage)
+                          : shown->stage;
+  if (seeds_.size() > 1)
+    where += fmt::format(", seed {}", seeds_[static_cast<std::size_t>(shown - progress_.data())]);
+  const std::string text = fmt::format("{:3.0f} %  {}  {}  t = {:.1f} s  {} spheres  {:.1f} M steps/s",
+                                       100 * share, last ? spell_duration(elapsed) : left, where, shown->time,
+                                       shown->particles, steps / std::max(elapsed, 1e-3) / 1e6);
   if (terminal_) {
     const int full = static_cast<int>(20 * share);
     fmt::print(stderr, "\r\033[K[{}{}] {}", std::string(full, '#'), std::string(20 - full, '.'), text);

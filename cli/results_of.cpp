@@ -10,7 +10,8 @@
 
 namespace scree {
 namespace {
-constexpr double kOverlapWarning = 0.10;  // of the smaller radius; physics of soft spheres beyond it is doubtful
+constexpr double kOverlapWarning =
+    0.10;  // of the smaller radius; physics of soft spheres beyond it is doubtful
 }
 
 SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outcome) {
@@ -42,7 +43,8 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
         if (g.dump <= dumps) dumped.push_back(g);
       if (dumped.empty()) return;
       std::vector<int> numbers{scenario.output.sections};
-      numbers.insert(numbers.end(), scenario.output.further_sections.begin(), scenario.output.further_sections.end());
+      numbers.insert(numbers.end(), scenario.output.further_sections.begin(),
+                     scenario.output.further_sections.end());
       for (const int n : numbers) {
         r.sections.push_back(analyse_sections(pile, dumped, dump->bench.height, n));
         r.sections.back().dumps = dumps;
@@ -58,8 +60,9 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
   return r;
 }
 
-RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds, std::vector<std::string> notes,
-                       const std::vector<ReferenceValue>& reference, double wall_seconds) {
+RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
+                       std::vector<std::string> notes, const std::vector<ReferenceValue>& reference,
+                       double wall_seconds) {
   RunResult result;
   result.title = scenario.title;
   result.scenario = scenario.name;
@@ -76,18 +79,22 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds, 
   for (const SeedResult& s : result.seeds) {
     overlap = std::max(overlap, s.largest_overlap_ratio);
     lost += s.lost_mass, lost_count += s.lost_particles, mass += s.mass;
-    if (s.interrupted) result.notes.push_back(fmt::format("seed {} was ended by the user: its pile is not finished", s.seed));
+    if (s.interrupted)
+      result.notes.push_back(fmt::format("seed {} was ended by the user: its pile is not finished", s.seed));
   }
   if (overlap > kOverlapWarning)
-    result.notes.push_back(
-        fmt::format("the largest overlap was {:.0f} % of the smaller radius, above {:.0f} %: spheres this soft deform too much "
-                    "under impact; raise material.effective_modulus_pa to see whether the result depends on it",
-                    100 * overlap, 100 * kOverlapWarning));
+    result.notes.push_back(fmt::format(
+        "the largest overlap was {:.0f} % of the smaller radius, above {:.0f} %: spheres this soft deform "
+        "too much "
+        "under impact; raise material.effective_modulus_pa to see whether the result depends on it",
+        100 * overlap, 100 * kOverlapWarning));
   if (lost_count > 0)
-    result.notes.push_back(fmt::format("{} spheres ({:.2f} t, {:.2f} % of the mass) left the model and are not in the pile", lost_count,
-                                       lost / 1000, 100 * lost / mass));
+    result.notes.push_back(
+        fmt::format("{} spheres ({:.2f} t, {:.2f} % of the mass) left the model and are not in the pile",
+                    lost_count, lost / 1000, 100 * lost / mass));
   if (scenario.engine == EngineKind::impulse)
-    result.notes.push_back("the impulse engine is not calibrated: its repose angles are not those of rrlinear");
+    result.notes.push_back(
+        "the impulse engine is not calibrated: its repose angles are not those of rrlinear");
   return result;
 }
 

@@ -10,7 +10,8 @@ namespace scree {
 SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outcome);
 
 /// Puts the seeds together, compares with the reference cases and adds what a reader must know.
-RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds, std::vector<std::string> notes,
-                       const std::vector<ReferenceValue>& reference, double wall_seconds);
+RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
+                       std::vector<std::string> notes, const std::vector<ReferenceValue>& reference,
+                       double wall_seconds);
 
 }  // namespace scree

@@ -35,14 +35,17 @@ void write_text(const fs::path& file, const std::string& text) {
   std::ofstream out(file);
   out << text;
   out.close();
-  if (!out) throw std::runtime_error(fmt::format("{}: cannot be written (disk full, or no permission?)", file.string()));
+  if (!out)
+    throw std::runtime_error(
+        fmt::format("{}: cannot be written (disk full, or no permission?)", file.string()));
 }
 
 // The seeds of a run: `count` of them, those of the scenario first.
 std::vector<std::uint64_t> chosen_seeds(const scree::Scenario& scenario, int count) {
   std::vector<std::uint64_t> seeds = scenario.seeds;
   if (count == 0) return seeds;
-  while (static_cast<int>(seeds.size()) < count) seeds.push_back(*std::max_element(seeds.begin(), seeds.end()) + 1);
+  while (static_cast<int>(seeds.size()) < count)
+    seeds.push_back(*std::max_element(seeds.begin(), seeds.end()) + 1);
   seeds.resize(static_cast<std::size_t>(count));
   return seeds;
 }
@@ -106,7 +109,8 @@ int run_run(const RunOptions& options) {
 
   const fs::path out = options.out.empty() ? free_folder(scenario.name) : options.out;
   if (!options.force && fs::exists(out) && !(fs::is_directory(out) && fs::is_empty(out))) {
-    fmt::print(stderr, "{}: is there already; choose another --out, or --force to write into it\n", out.string());
+    fmt::print(stderr, "{}: is there already; choose another --out, or --force to write into it\n",
+               out.string());
     return kBadInput;
   }
   std::error_code error;
@@ -131,8 +135,8 @@ int run_run(const RunOptions& options) {
     for (int w = 0; w < side_by_side; ++w)
       workers.emplace_back([&] {
         for (std::size_t k = next++; k < runs.size() && !interrupted; k = next++)
-          run_seed(scenario, runs[k], std::max(1, threads / side_by_side), out / fmt::format("seed_{}", runs[k].seed),
-                   display, k);
+          run_seed(scenario, runs[k], std::max(1, threads / side_by_side),
+                   out / fmt::format("seed_{}", runs[k].seed), display, k);
       });
     workers.clear();
     display.finish();
@@ -155,12 +159,14 @@ int run_run(const RunOptions& options) {
     return interrupted ? kInterrupted : kFailed;
   }
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const scree::RunResult result = scree::put_together(
-      scenario, std::move(results), std::move(notes), scree::read_reference(asset_dir() / "reference" / "results.csv"), wall);
+  const scree::RunResult result =
+      scree::put_together(scenario, std::move(results), std::move(notes),
+                          scree::read_reference(asset_dir() / "reference" / "results.csv"), wall);
   scree::write_summary(result, out / "summary.json");
   scree::write_sections_csv(result, out / "sections.csv");
   scree::SceneFacts scene;
-  if (const auto* dump = std::get_if<scree::EndDump>(&scenario.experiment)) scene.bench_slope = dump->bench.slope_deg;
+  if (const auto* dump = std::get_if<scree::EndDump>(&scenario.experiment))
+    scene.bench_slope = dump->bench.slope_deg;
   scree::write_report(result, out, scene);
 
   scree::print_result(result);

@@ -18,8 +18,8 @@ std::string with_std(double mean, std::optional<double> std) {
 
 void print_comparison(const std::vector<Comparison>& comparison) {
   if (comparison.empty()) return;
-  fmt::print("\n{:<16} {:<8} {:<8} {:<9} {:>17} {:>17} {:>7}\n", "case", "value", "section", "kind", "printed", "simulated",
-             "z");
+  fmt::print("\n{:<16} {:<8} {:<8} {:<9} {:>17} {:>17} {:>7}\n", "case", "value", "section", "kind",
+             "printed", "simulated", "z");
   for (const Comparison& c : comparison)
     fmt::print("{:<16} {:<8} {:<8} {:<9} {:>17} {:>17} {:>7}\n", c.reference.case_name, c.reference.quantity,
                c.reference.section, c.reference.kind, with_std(c.reference.value, c.reference.std),
@@ -28,11 +28,14 @@ void print_comparison(const std::vector<Comparison>& comparison) {
 
 void print_result(const RunResult& result) {
   for (const SeedResult& s : result.seeds)
-    fmt::print("seed {}: {} spheres, {:.1f} s simulated in {:.1f} s, {:.1f} M particle-steps/s, largest overlap {:.0f} %, lost {}{}\n",
-               s.seed, s.particles, s.simulated_seconds, s.wall_seconds, s.particle_steps / s.wall_seconds / 1e6,
-               100 * s.largest_overlap_ratio, s.lost_particles, s.at_rest ? "" : "  (not at rest)");
+    fmt::print(
+        "seed {}: {} spheres, {:.1f} s simulated in {:.1f} s, {:.1f} M particle-steps/s, largest overlap "
+        "{:.0f} %, lost {}{}\n",
+        s.seed, s.particles, s.simulated_seconds, s.wall_seconds, s.particle_steps / s.wall_seconds / 1e6,
+        100 * s.largest_overlap_ratio, s.lost_particles, s.at_rest ? "" : "  (not at rest)");
   if (const SectionTable* layout = section_layout(result, 0)) {
-    fmt::print("\n{:<8} {:>6} {:>9} {:>16} {:>8} {:>9}\n", "section", "x/L", "mass t", "chi", "D50 m", "D50/D50'");
+    fmt::print("\n{:<8} {:>6} {:>9} {:>16} {:>8} {:>9}\n", "section", "x/L", "mass t", "chi", "D50 m",
+               "D50/D50'");
     for (std::size_t k = 0; k < layout->sections.size(); ++k) {
       const auto mean = [&](auto get) { return mean_std(over_seeds(result, 0, k, get)); };
       const MeanStd chi = mean([](const Section& x) { return x.chi; });

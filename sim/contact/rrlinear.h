@@ -1,16 +1,17 @@
 #pragma once
-// The rolling resistance linear ("rrlinear") contact law, in its one place. Sphere-sphere, sphere-mesh and sphere-fixed ball
-// contacts all come through here.
+// The rolling resistance linear ("rrlinear") contact law, in its one place. Sphere-sphere, sphere-mesh and
+// sphere-fixed ball contacts all come through here.
 //
-// Piece 1 is a sphere, piece 2 a sphere or a facet; the normal n points from 1 to 2, the overlap u is positive.
+// Piece 1 is a sphere, piece 2 a sphere or a facet; the normal n points from 1 to 2, the overlap u is
+// positive.
 //   normal   Fn = kn u                                          no tension
 //   shear    Fs <- rotated Fs + ks (tangential displacement of 2 against 1), |Fs| <= mu Fn
 //   rolling  Mr <- rotated Mr + kr (rotation of 2 against 1 in the contact plane), |Mr| <= mu_r Rbar Fn
 //   kn = pi r^2 E / L, ks = kn / k*, kr = ks Rbar^2
 //   ball-ball:  r = min(R1, R2), L = R1 + R2, 1/Rbar = 1/R1 + 1/R2
 //   ball-facet: r = R1,          L = R1,      Rbar = R1
-// Source: PFC3D 5.0 documentation, linear and rolling resistance linear models; Wensrich & Katterfeld, Powder Technology
-// 217 (2012).
+// Source: PFC3D 5.0 documentation, linear and rolling resistance linear models; Wensrich & Katterfeld, Powder
+// Technology 217 (2012).
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -22,8 +23,8 @@ namespace scree {
 
 /// What of the material a contact needs, prepared once.
 struct ContactLaw {
-  double modulus_pi;              ///< pi E, Pa
-  double inverse_stiffness_ratio; ///< 1 / k*
+  double modulus_pi;               ///< pi E, Pa
+  double inverse_stiffness_ratio;  ///< 1 / k*
   double mu, mu_r;
   double beta_n, beta_s;
 
@@ -78,8 +79,8 @@ struct ContactForce {
   Vec3 rolling;  ///< N m
 };
 
-/// Turns a remembered vector with the contact: into the new contact plane with its length kept, and about the normal by
-/// `angle` (small), the mean twist of the pieces.
+/// Turns a remembered vector with the contact: into the new contact plane with its length kept, and about the
+/// normal by `angle` (small), the mean twist of the pieces.
 [[gnu::always_inline]] inline Vec3 turned_with_contact(const Vec3& v, const Vec3& n, double angle) {
   const Vec3 flat = v - n * v.dot(n);
   const double flat2 = flat.squaredNorm(), full2 = v.squaredNorm();
@@ -89,8 +90,8 @@ struct ContactForce {
 }
 
 /// One step of the law; updates the history.
-[[gnu::always_inline]] inline ContactForce contact_step(const ContactLaw& law, const ContactStiffness& k, const ContactMotion& c,
-                                 ContactHistory& history) {
+[[gnu::always_inline]] inline ContactForce contact_step(const ContactLaw& law, const ContactStiffness& k,
+                                                        const ContactMotion& c, ContactHistory& history) {
   const Vec3& n = c.normal;
   double fn = k.kn * c.overlap;
   const double vn = c.velocity.dot(n);
@@ -122,7 +123,8 @@ struct ContactForce {
 
 /// Elastic energy held by a contact (J).
 inline double elastic_energy(const ContactStiffness& k, double overlap, const ContactHistory& h) {
-  return 0.5 * k.kn * overlap * overlap + 0.5 * h.shear.squaredNorm() / k.ks + 0.5 * h.rolling.squaredNorm() / k.kr;
+  return 0.5 * k.kn * overlap * overlap + 0.5 * h.shear.squaredNorm() / k.ks +
+         0.5 * h.rolling.squaredNorm() / k.kr;
 }
 
 /// Local (non-viscous) damping of one component: the generalised force f becomes f - alpha |f| sign(v).

@@ -13,8 +13,8 @@ struct TriangleMesh {
   std::string name;
   std::vector<Vec3> vertices;                 ///< m, local frame; no two at the same place (welded)
   std::vector<std::array<int, 3>> triangles;  ///< counter-clockwise seen from outside
-  /// True when every edge belongs to exactly two triangles of opposite direction: the mesh bounds a solid and only the
-  /// outside of its faces pushes. A mesh that is not closed is a sheet: both sides push.
+  /// True when every edge belongs to exactly two triangles of opposite direction: the mesh bounds a solid and
+  /// only the outside of its faces pushes. A mesh that is not closed is a sheet: both sides push.
   bool closed = false;
 };
 
@@ -30,10 +30,11 @@ struct LoadedMesh {
   MeshReport report;
 };
 
-/// Reads STL, OBJ, PLY or glTF/GLB (by extension; nothing else is tried), multiplies by `scale` (metres per file unit), applies the
-/// node transforms of the file, welds vertices, drops zero-area faces (warning), orients faces outwards when the mesh is
-/// closed, and checks it. Errors: unreadable, no triangles, not finite, larger than `max_size` (m; "8000 m: millimetres read as metres?"
-/// with the `scale` to write) or smaller than 1 mm. Warnings: holes (open edges, how many and where), edges shared by three or more faces,
+/// Reads STL, OBJ, PLY or glTF/GLB (by extension; nothing else is tried), multiplies by `scale` (metres per
+/// file unit), applies the node transforms of the file, welds vertices, drops zero-area faces (warning),
+/// orients faces outwards when the mesh is closed, and checks it. Errors: unreadable, no triangles, not
+/// finite, larger than `max_size` (m; "8000 m: millimetres read as metres?" with the `scale` to write) or
+/// smaller than 1 mm. Warnings: holes (open edges, how many and where), edges shared by three or more faces,
 /// inconsistent orientation, dropped faces. Never throws for a bad file: the report says it.
 LoadedMesh load_mesh(const std::filesystem::path& file, double scale = 1.0, double max_size = 1000.0);
 

@@ -15,7 +15,8 @@ class Grading {
     double passing;   ///< share of mass, 0 to 1
   };
 
-  /// Points with strictly rising diameters and rising passing, from 0 to 1; throws std::invalid_argument otherwise.
+  /// Points with strictly rising diameters and rising passing, from 0 to 1; throws std::invalid_argument
+  /// otherwise.
   Grading(std::string name, std::vector<Point> points);
 
   /// Passing share at a diameter (m).
@@ -39,8 +40,9 @@ class Grading {
   std::vector<Point> points_;
 };
 
-/// Reads a grading file: CSV, `#` comment lines (source, how it was rebuilt), header `diameter_mm,passing_pct`.
-/// Throws std::runtime_error with one line `file:line: what is wrong, what is allowed`.
+/// Reads a grading file: CSV, `#` comment lines (source, how it was rebuilt), header
+/// `diameter_mm,passing_pct`. Throws std::runtime_error with one line `file:line: what is wrong, what is
+/// allowed`.
 Grading read_grading(const std::filesystem::path& file);
 
 /// Diameters (m), largest first, of spheres that together weigh `mass` (kg) within 0.5 % and whose passing

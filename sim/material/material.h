@@ -3,21 +3,21 @@
 
 namespace scree {
 
-/// Where local damping acts. `always` is the thesis's model (PFC3D): in flight too. `contacts` leaves free flight
-/// undamped.
+/// Where local damping acts. `always` is the thesis's model (PFC3D): in flight too. `contacts` leaves free
+/// flight undamped.
 enum class DampingReach { always, contacts };
 
 /// Parameters of the rolling resistance linear ("rrlinear") law. Defaults: thesis, Table 5.1.
 struct Material {
-  double density = 2760.0;             ///< Density of the solid rock, kg/m3.
-  double mu = 0.44;                    ///< Sliding friction coefficient, -.
-  double mu_r = 0.44;                  ///< Rolling resistance coefficient, -.
-  double effective_modulus = 1.0e6;    ///< Effective modulus E of the contacts, Pa.
-  double stiffness_ratio = 2.5;        ///< k* = normal over shear stiffness, -.
-  double local_damping = 0.4;          ///< alpha of local damping, 0 to 1, -.
+  double density = 2760.0;           ///< Density of the solid rock, kg/m3.
+  double mu = 0.44;                  ///< Sliding friction coefficient, -.
+  double mu_r = 0.44;                ///< Rolling resistance coefficient, -.
+  double effective_modulus = 1.0e6;  ///< Effective modulus E of the contacts, Pa.
+  double stiffness_ratio = 2.5;      ///< k* = normal over shear stiffness, -.
+  double local_damping = 0.4;        ///< alpha of local damping, 0 to 1, -.
   DampingReach damping_reach = DampingReach::always;
-  double normal_damping_ratio = 0.0;   ///< beta_n, share of critical damping of the normal dashpot, -.
-  double shear_damping_ratio = 0.0;    ///< beta_s, the same of the shear dashpot, -.
+  double normal_damping_ratio = 0.0;  ///< beta_n, share of critical damping of the normal dashpot, -.
+  double shear_damping_ratio = 0.0;   ///< beta_s, the same of the shear dashpot, -.
 };
 
 /// Friction of a surface (truck bed, bench, bucket) against rock; it replaces the rock's own in that contact.

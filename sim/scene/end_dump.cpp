@@ -101,8 +101,8 @@ RunOutcome run_end_dump(const Scenario& scenario, const EndDump& e, std::uint64_
       world.remove_mesh(gate);
     } else {
       const double start = world.time(), seconds = e.truck.tilt_deg / e.truck.hoist_rate_deg;
-      world.set_mesh_motion(bed, 
-          Motion({{start, pose}, {start + seconds, truck_pose(e, y, e.truck.tilt_deg)}}));
+      world.set_mesh_motion(bed,
+                            Motion({{start, pose}, {start + seconds, truck_pose(e, y, e.truck.tilt_deg)}}));
       world.set_mesh_motion(gate, swinging_gate(e, y, start, seconds));
       emptied = share + 0.6 * part;
       if (!stage.advance(seconds + kHoistPause, "hoisting", share + 0.1 * part, emptied))

@@ -15,9 +15,10 @@ double radians(double degrees) {
   return degrees * std::numbers::pi / 180.0;
 }
 
-// Balls of one row of the layer, along y through (x, z) on the surface; (tx, tz) is the direction of steepest descent.
-void add_row(std::vector<NewSphere>& balls, double x, double z, double tx, double tz, double half_width, bool shifted,
-             BaseLayer layer, Random& random) {
+// Balls of one row of the layer, along y through (x, z) on the surface; (tx, tz) is the direction of steepest
+// descent.
+void add_row(std::vector<NewSphere>& balls, double x, double z, double tx, double tz, double half_width,
+             bool shifted, BaseLayer layer, Random& random) {
   const double d = kBallDiameter;
   const auto add = [&](const Vec3& position, double diameter) {
     NewSphere ball;
@@ -32,7 +33,8 @@ void add_row(std::vector<NewSphere>& balls, double x, double z, double tx, doubl
       continue;
     }
     for (const double along : {-0.25 * d, 0.25 * d})
-      for (const double across : {-0.25 * d, 0.25 * d}) add({x + along * tx, y + across, z + along * tz}, 0.5 * d);
+      for (const double across : {-0.25 * d, 0.25 * d})
+        add({x + along * tx, y + across, z + along * tz}, 0.5 * d);
   }
 }
 
@@ -88,8 +90,8 @@ std::vector<NewSphere> make_base_layer(const BenchSpec& b, std::uint64_t seed) {
     if (s < 0)
       add_row(balls, s, b.height, 1, 0, half, shifted, b.base_layer, random);
     else if (s < slope)
-      add_row(balls, s * std::cos(angle), b.height - s * std::sin(angle), std::cos(angle), -std::sin(angle), half,
-              shifted, b.base_layer, random);
+      add_row(balls, s * std::cos(angle), b.height - s * std::sin(angle), std::cos(angle), -std::sin(angle),
+              half, shifted, b.base_layer, random);
     else
       add_row(balls, toe_of(b) + s - slope, 0, 1, 0, half, shifted, b.base_layer, random);
   }

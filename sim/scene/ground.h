@@ -15,16 +15,18 @@ double toe_of(const BenchSpec& bench);
 /// The bench as a closed solid, 5 m deep below its floor.
 TriangleMesh make_bench(const BenchSpec& bench);
 
-/// Fixed balls that cover top, slope and floor: rows across the slope at a hexagonal pitch, so that no straight
-/// groove leads down it. Their centres lie on the surface. The source does not say how deep they sit; with the centres on the surface the
-/// masses of the highest and the lowest of six sections of case A1 come out as printed (32 t, 375 t), with balls that rest on the surface
-/// they do not (50 t, 204 t). `mixed` puts four 0.5 m balls at half of the places, drawn at random (thesis, appendix F).
+/// Fixed balls that cover top, slope and floor: rows across the slope at a hexagonal pitch, so that no
+/// straight groove leads down it. Their centres lie on the surface. The source does not say how deep they
+/// sit; with the centres on the surface the masses of the highest and the lowest of six sections of case A1
+/// come out as printed (32 t, 375 t), with balls that rest on the surface they do not (50 t, 204 t). `mixed`
+/// puts four 0.5 m balls at half of the places, drawn at random (thesis, appendix F).
 std::vector<NewSphere> make_base_layer(const BenchSpec& bench, std::uint64_t seed);
 
 /// The same on a square floor at z = 0 from -half_width to half_width.
 std::vector<NewSphere> make_floor_layer(double half_width, BaseLayer layer, std::uint64_t seed);
 
-/// A tube about the z axis, closed as a solid: inner radius of the inscribed circle, from z = low to high (m).
+/// A tube about the z axis, closed as a solid: inner radius of the inscribed circle, from z = low to high
+/// (m).
 TriangleMesh make_tube(double inner_radius, double wall, double low, double high, int sides);
 
 }  // namespace scree

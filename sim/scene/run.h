@@ -13,18 +13,19 @@ namespace scree {
 
 /// How far a run is.
 struct RunProgress {
-  double share = 0;           ///< of the whole run, 0 to 1, an estimate
-  double time = 0;            ///< simulated, s
+  double share = 0;  ///< of the whole run, 0 to 1, an estimate
+  double time = 0;   ///< simulated, s
   int dump = 0, dumps = 0;
-  double moving_share = 0;    ///< of the load's mass
-  std::int64_t particles = 0; ///< in the model now
-  double particle_steps = 0;  ///< so far
-  const char* stage = "";     ///< "settling", "dumping", "lifting"
+  double moving_share = 0;     ///< of the load's mass
+  std::int64_t particles = 0;  ///< in the model now
+  double particle_steps = 0;   ///< so far
+  const char* stage = "";      ///< "settling", "dumping", "lifting"
 };
 
 /// What a run tells while it goes on.
 struct RunHooks {
-  /// Every grain that will be dumped, at its place in the container, and the fixed balls; before the first step.
+  /// Every grain that will be dumped, at its place in the container, and the fixed balls; before the first
+  /// step.
   std::function<void(const std::vector<Grain>& grains, const std::vector<Grain>& fixed)> begin;
   /// A frame of the trajectory.
   std::function<void(const Snapshot&, std::int64_t step)> frame;
@@ -40,17 +41,17 @@ struct RunOutcome {
     Snapshot pile;
   };
   std::vector<AfterDump> after_dumps;  ///< the piles asked for in output.after_dumps, but for the last
-  std::vector<Grain> original;      ///< every grain as generated
+  std::vector<Grain> original;         ///< every grain as generated
   std::int64_t fixed_balls = 0;
   WorldStatistics statistics;
   double simulated_seconds = 0, wall_seconds = 0;
-  bool at_rest = true;              ///< every load came to rest before stop.max_time
+  bool at_rest = true;  ///< every load came to rest before stop.max_time
   bool interrupted = false;
   std::vector<std::string> notes;
 };
 
-/// Runs one seed with `threads` worker threads. Throws BlowUp, std::runtime_error (meshes), std::invalid_argument (rock that does not
-/// fit its container).
+/// Runs one seed with `threads` worker threads. Throws BlowUp, std::runtime_error (meshes),
+/// std::invalid_argument (rock that does not fit its container).
 RunOutcome run_scenario(const Scenario& scenario, std::uint64_t seed, int threads, const RunHooks& hooks);
 
 }  // namespace scree

@@ -17,45 +17,48 @@ enum class EngineKind { rrlinear, impulse };
 
 /// One pose of a tool at one time; between keyframes position is linear and rotation is spherical-linear.
 struct Keyframe {
-  double time = 0;                     ///< s since the start of the clock
-  Vec3 position = Vec3::Zero();        ///< m
-  Vec3 rotation_deg = Vec3::Zero();    ///< rotations about x, y, z in degrees, applied in this order about fixed axes
+  double time = 0;               ///< s since the start of the clock
+  Vec3 position = Vec3::Zero();  ///< m
+  Vec3 rotation_deg =
+      Vec3::Zero();  ///< rotations about x, y, z in degrees, applied in this order about fixed axes
 };
 
 /// A user's mesh in the scene, moved by keyframes.
 struct ToolSpec {
   std::string name;
-  std::filesystem::path mesh;          ///< resolved path
-  double scale = 1.0;                  ///< metres per unit of the mesh file
-  std::optional<double> mu, mu_r;      ///< default: the rock's own
-  std::vector<Keyframe> keyframes;     ///< at least one
+  std::filesystem::path mesh;       ///< resolved path
+  double scale = 1.0;               ///< metres per unit of the mesh file
+  std::optional<double> mu, mu_r;   ///< default: the rock's own
+  std::vector<Keyframe> keyframes;  ///< at least one
 };
 
 enum class BaseLayer { none, homogeneous, mixed };
 
 /// Bench: top at z = height for x < 0, crest at x = 0, slope down to the toe, floor at z = 0.
 struct BenchSpec {
-  double height = 10;                  ///< m
-  double slope_deg = 45;               ///< initial slope
-  double top_length = 40;              ///< m
-  double floor_length = 80;            ///< m
-  double width = 100;                  ///< m, y from -width/2 to width/2
-  BaseLayer base_layer = BaseLayer::homogeneous;  ///< fixed balls: 1 m (homogeneous), or 0.5 and 1 m (mixed, appendix F)
+  double height = 10;        ///< m
+  double slope_deg = 45;     ///< initial slope
+  double top_length = 40;    ///< m
+  double floor_length = 80;  ///< m
+  double width = 100;        ///< m, y from -width/2 to width/2
+  BaseLayer base_layer =
+      BaseLayer::homogeneous;  ///< fixed balls: 1 m (homogeneous), or 0.5 and 1 m (mixed, appendix F)
 };
 
 enum class Release { open_gate, hoist };
 
-/// Truck bed and tailgate. Local frame: origin at the middle of the discharge lip on the bed's floor, bed along -x, z up.
+/// Truck bed and tailgate. Local frame: origin at the middle of the discharge lip on the bed's floor, bed
+/// along -x, z up.
 struct TruckSpec {
   std::filesystem::path bed_mesh, gate_mesh;
   double scale = 1.0;
-  Vec3 load_box{8, 8, 4};              ///< inner length, width, height of the bed, m
-  double tilt_deg = 45;                ///< final tilt
-  double drop_height = 1.5;            ///< lip above the crest, m
-  double setback = 0;                  ///< lip behind the crest, m
+  Vec3 load_box{8, 8, 4};    ///< inner length, width, height of the bed, m
+  double tilt_deg = 45;      ///< final tilt
+  double drop_height = 1.5;  ///< lip above the crest, m
+  double setback = 0;        ///< lip behind the crest, m
   Release release = Release::open_gate;
-  double hoist_rate_deg = 6;           ///< degrees per second, hoist only
-  double settle_s = 1.0;               ///< time the load settles behind the closed gate
+  double hoist_rate_deg = 6;  ///< degrees per second, hoist only
+  double settle_s = 1.0;      ///< time the load settles behind the closed gate
   std::optional<double> mu, mu_r;
 };
 
@@ -64,19 +67,19 @@ struct EndDump {
   BenchSpec bench;
   TruckSpec truck;
   int dumps = 4;
-  double payload = 300e3;              ///< kg
-  std::vector<double> points{0.0};     ///< y of the dump points (m), visited in turn
+  double payload = 300e3;           ///< kg
+  std::vector<double> points{0.0};  ///< y of the dump points (m), visited in turn
 };
 
 /// Container filled with rock, then lifted: the repose angle test.
 struct ReposeLift {
   std::filesystem::path container_mesh;
   double scale = 1.0;
-  double diameter = 0.35;              ///< inner, m
-  double height = 0.60;                ///< m
-  double mass = 75;                    ///< kg
-  double lift_velocity = 0.5;          ///< m/s
-  double floor_radius = 1.5;           ///< half width of the floor, m
+  double diameter = 0.35;                              ///< inner, m
+  double height = 0.60;                                ///< m
+  double mass = 75;                                    ///< kg
+  double lift_velocity = 0.5;                          ///< m/s
+  double floor_radius = 1.5;                           ///< half width of the floor, m
   std::optional<double> container_mu, container_mu_r;  ///< wall of the container; default the rock's own
   std::optional<double> floor_mu, floor_mu_r;
   BaseLayer base_layer = BaseLayer::none;
@@ -84,31 +87,31 @@ struct ReposeLift {
 
 /// A load comes to rest when less than `moving_mass_share` of the mass moves faster than `speed`.
 struct StopRule {
-  double speed = 0.1;                  ///< m/s
+  double speed = 0.1;  ///< m/s
   double moving_mass_share = 0.01;
-  double min_time = 1.0;               ///< s after the release
-  double max_time = 60;                ///< s after the release; reaching it is reported
+  double min_time = 1.0;  ///< s after the release
+  double max_time = 60;   ///< s after the release; reaching it is reported
 };
 
 struct Numerics {
-  double time_step_safety = 0.8;       ///< share of the stable step (rrlinear)
-  bool sleep = true;                   ///< spheres at rest cost nothing until disturbed (rrlinear)
-  double impulse_time_step = 1.0e-3;   ///< s (impulse)
+  double time_step_safety = 0.8;      ///< share of the stable step (rrlinear)
+  bool sleep = true;                  ///< spheres at rest cost nothing until disturbed (rrlinear)
+  double impulse_time_step = 1.0e-3;  ///< s (impulse)
   int impulse_iterations = 20;
 };
 
 /// A row of `compare`: against which of the reference cases in assets/reference the result is held.
 struct OutputSpec {
-  double frame_interval = 1.0;         ///< s of simulated time between frames of the trajectory; 0: only the last
+  double frame_interval = 1.0;  ///< s of simulated time between frames of the trajectory; 0: only the last
   int sections = 6;
-  std::vector<int> further_sections;   ///< other numbers of sections to analyse beside, for example 3
-  std::vector<int> after_dumps;        ///< also analyse the pile after these dumps
+  std::vector<int> further_sections;  ///< other numbers of sections to analyse beside, for example 3
+  std::vector<int> after_dumps;       ///< also analyse the pile after these dumps
   bool trajectory = true;
 };
 
 struct Scenario {
   std::string title;
-  std::string name;                    ///< the file's stem
+  std::string name;  ///< the file's stem
   EngineKind engine = EngineKind::rrlinear;
   std::vector<std::uint64_t> seeds{10001};
   Material material;
@@ -118,16 +121,16 @@ struct Scenario {
   StopRule stop;
   Numerics numerics;
   OutputSpec output;
-  std::vector<std::string> compare;    ///< names of reference cases in assets/reference/results.csv
-  std::string resolved_yaml;           ///< the whole scenario with every default filled in
+  std::vector<std::string> compare;  ///< names of reference cases in assets/reference/results.csv
+  std::string resolved_yaml;         ///< the whole scenario with every default filled in
 };
 
 /// One thing wrong in a scenario file.
 struct ScenarioError {
   std::string file;
-  int line = 0, column = 0;            ///< from 1; 0 for `--set`
-  std::string message;                 ///< what is wrong, what is allowed
-  std::string text() const;            ///< file:line:column: message
+  int line = 0, column = 0;  ///< from 1; 0 for `--set`
+  std::string message;       ///< what is wrong, what is allowed
+  std::string text() const;  ///< file:line:column: message
 };
 
 /// A scenario, or everything that is wrong with it.
@@ -137,9 +140,9 @@ struct ScenarioResult {
   std::vector<std::string> warnings;
 };
 
-/// Reads, resolves `extends`, applies overrides ("material.mu=0.5"), checks everything (meshes and grading are opened too).
-/// `asset_dir` is the project's assets folder: gradings are found by name there, meshes by relative path; paths in
-/// a file are first taken relative to that file.
+/// Reads, resolves `extends`, applies overrides ("material.mu=0.5"), checks everything (meshes and grading
+/// are opened too). `asset_dir` is the project's assets folder: gradings are found by name there, meshes by
+/// relative path; paths in a file are first taken relative to that file.
 ScenarioResult load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                              const std::filesystem::path& asset_dir);
 

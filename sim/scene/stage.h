@@ -8,8 +8,8 @@ namespace scree {
 
 class Stage {
  public:
-  Stage(const Scenario& scenario, std::uint64_t seed, int threads, const RunHooks& hooks, const Vec3& domain_low,
-        const Vec3& domain_high);
+  Stage(const Scenario& scenario, std::uint64_t seed, int threads, const RunHooks& hooks,
+        const Vec3& domain_low, const Vec3& domain_high);
 
   RockWorld& world() { return *world_; }
   const Scenario& scenario() const { return scenario_; }
@@ -22,12 +22,14 @@ class Stage {
   /// Puts the user's own tools into the scene.
   void add_tools();
 
-  /// Tells the hooks what will come. `loads` holds every grain in order of dumping; ids follow the fixed balls.
+  /// Tells the hooks what will come. `loads` holds every grain in order of dumping; ids follow the fixed
+  /// balls.
   void begin(const std::vector<NewSphere>& fixed, const std::vector<std::vector<NewSphere>>& loads);
   /// Adds the next load.
   void add_load();
 
-  /// Advances by `seconds`; false when the user ended the run. `share_now`, `share_then`: of the whole run, for progress.
+  /// Advances by `seconds`; false when the user ended the run. `share_now`, `share_then`: of the whole run,
+  /// for progress.
   bool advance(double seconds, const char* stage, double share_now, double share_then);
   /// Advances until the load has come to rest (stop rule) or max_time has passed, which is noted.
   bool advance_to_rest(const char* stage, double share_now, double share_then);
@@ -56,7 +58,7 @@ class Stage {
 /// The experiments; each runs a stage from its beginning to its end.
 RunOutcome run_end_dump(const Scenario& scenario, const EndDump& experiment, std::uint64_t seed, int threads,
                         const RunHooks& hooks);
-RunOutcome run_repose_lift(const Scenario& scenario, const ReposeLift& experiment, std::uint64_t seed, int threads,
-                           const RunHooks& hooks);
+RunOutcome run_repose_lift(const Scenario& scenario, const ReposeLift& experiment, std::uint64_t seed,
+                           int threads, const RunHooks& hooks);
 
 }  // namespace scree

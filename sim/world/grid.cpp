@@ -71,8 +71,7 @@ void NeighbourGrid::place(int i, const Vec3& position, double reach) {
 
 void NeighbourGrid::remove(int i) {
   if (level_[i] < 0) return;
-  for (int l = level_[i]; l < levels_; ++l)
-    unlink(l == level_[i] ? own_[l] : finer_[l], i * levels_ + l);
+  for (int l = level_[i]; l < levels_; ++l) unlink(l == level_[i] ? own_[l] : finer_[l], i * levels_ + l);
   level_[i] = -1;
 }
 

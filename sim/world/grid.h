@@ -1,11 +1,12 @@
 #pragma once
 // Levels of hashed cells for spheres of very different size.
 //
-// A sphere with reach r (radius plus skin) lives on the level whose cells are the smallest of width >= kCellReaches r; cells double from
-// level to level. Every level has two tables of cells: `own` holds the spheres of that level, `finer` all those of finer
-// levels. A query of a sphere on level a looks into own and finer of level a, and into own of every coarser level: with cells of
-// the larger partner's size this is some ten cells a level, whatever the ratio of the sizes.
-// Insertion, removal and query touch only the sphere's own cells, so that one fast sphere costs nobody else anything.
+// A sphere with reach r (radius plus skin) lives on the level whose cells are the smallest of width >=
+// kCellReaches r; cells double from level to level. Every level has two tables of cells: `own` holds the
+// spheres of that level, `finer` all those of finer levels. A query of a sphere on level a looks into own and
+// finer of level a, and into own of every coarser level: with cells of the larger partner's size this is some
+// ten cells a level, whatever the ratio of the sizes. Insertion, removal and query touch only the sphere's
+// own cells, so that one fast sphere costs nobody else anything.
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -16,10 +17,12 @@ namespace scree {
 
 class NeighbourGrid {
  public:
-  /// Width of a cell over the largest reach on its level: wider cells are fewer to visit, with more spheres in each.
+  /// Width of a cell over the largest reach on its level: wider cells are fewer to visit, with more spheres
+  /// in each.
   static constexpr double kCellReaches = 2.0;
 
-  /// Empties the grid; spheres will be numbered 0 to count - 1 and have reaches from min_reach to max_reach (m).
+  /// Empties the grid; spheres will be numbered 0 to count - 1 and have reaches from min_reach to max_reach
+  /// (m).
   void reset(int count, double min_reach, double max_reach);
   double max_reach() const { return cell_.back() / kCellReaches; }
   /// Puts sphere i at a place, moving it if it is there already. reach <= max_reach().
@@ -48,7 +51,9 @@ class NeighbourGrid {
   std::uint32_t bucket(std::uint64_t k) const {
     return static_cast<std::uint32_t>((k * 0x9e3779b97f4a7c15ull) >> shift_);
   }
-  std::int64_t cell(double x, int level) const { return static_cast<std::int64_t>(std::floor(x * inverse_cell_[level])); }
+  std::int64_t cell(double x, int level) const {
+    return static_cast<std::int64_t>(std::floor(x * inverse_cell_[level]));
+  }
   void link(Table& table, std::int32_t entry, std::uint64_t k);
   void unlink(Table& table, std::int32_t entry);
   template <class Visit>
@@ -65,7 +70,8 @@ class NeighbourGrid {
 };
 
 template <class Visit>
-void NeighbourGrid::visit_cells(const Table& table, int level, const Vec3& x, double range, int self, Visit& visit) const {
+void NeighbourGrid::visit_cells(const Table& table, int level, const Vec3& x, double range, int self,
+                                Visit& visit) const {
   if (table.count == 0) return;
   const std::int64_t x0 = cell(x.x() - range, level), x1 = cell(x.x() + range, level);
   const std::int64_t y0 = cell(x.y() - range, level), y1 = cell(x.y() + range, level);

@@ -27,7 +27,8 @@ btScalar combined_friction(const btCollisionObject* a, const btCollisionObject* 
 }
 
 btScalar combined_rolling(const btCollisionObject* a, const btCollisionObject* b) {
-  const btScalar mu_r = surface_value(a, b, [](const btCollisionObject* o) { return o->getRollingFriction(); });
+  const btScalar mu_r =
+      surface_value(a, b, [](const btCollisionObject* o) { return o->getRollingFriction(); });
   const btSphereShape *sa = sphere_of(a), *sb = sphere_of(b);
   btScalar curvature = 0;
   if (sa) curvature += 1 / sa->getRadius();
@@ -35,7 +36,9 @@ btScalar combined_rolling(const btCollisionObject* a, const btCollisionObject* b
   return curvature > 0 ? mu_r / curvature : btScalar(0);
 }
 
-btScalar no_restitution(const btCollisionObject*, const btCollisionObject*) { return 0; }
+btScalar no_restitution(const btCollisionObject*, const btCollisionObject*) {
+  return 0;
+}
 
 }  // namespace
 
@@ -131,7 +134,8 @@ void ImpulseWorld::read_back() {
     const btPersistentManifold& manifold = *pairs->getManifoldByIndexInternal(m);
     double radius = 1e300;
     for (const btCollisionObject* object : {manifold.getBody0(), manifold.getBody1()})
-      if (const btSphereShape* s = sphere_of(object)) radius = std::min(radius, static_cast<double>(s->getRadius()));
+      if (const btSphereShape* s = sphere_of(object))
+        radius = std::min(radius, static_cast<double>(s->getRadius()));
     for (int c = 0; c < manifold.getNumContacts(); ++c)
       statistics_.largest_overlap_ratio =
           std::max(statistics_.largest_overlap_ratio, -manifold.getContactPoint(c).getDistance() / radius);

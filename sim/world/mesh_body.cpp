@@ -23,8 +23,9 @@ MeshBody::MeshBody(TriangleMesh mesh, const Surface& surface, Motion motion)
     facets_.push_back(f);
   }
   arrays_ = std::make_unique<btTriangleIndexVertexArray>(
-      static_cast<int>(mesh_.triangles.size()), mesh_.triangles.front().data(), static_cast<int>(3 * sizeof(int)),
-      static_cast<int>(mesh_.vertices.size()), vertices_.data(), static_cast<int>(3 * sizeof(btScalar)));
+      static_cast<int>(mesh_.triangles.size()), mesh_.triangles.front().data(),
+      static_cast<int>(3 * sizeof(int)), static_cast<int>(mesh_.vertices.size()), vertices_.data(),
+      static_cast<int>(3 * sizeof(btScalar)));
   // Uncompressed boxes: quantised ones would depend on the size of the whole mesh.
   shape_ = std::make_unique<btBvhTriangleMeshShape>(arrays_.get(), false);
   shape_->setMargin(0);

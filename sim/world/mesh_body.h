@@ -14,8 +14,12 @@
 
 namespace scree {
 
-inline btVector3 to_bullet(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-inline Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
+inline btVector3 to_bullet(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+inline Vec3 from_bullet(const btVector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
 btTransform to_bullet(const Pose& pose);
 
 /// A triangle ready for the closest-point test, in the mesh's own frame.
@@ -48,8 +52,8 @@ class MeshBody {
   double moved_since_mark() const;
   void mark() { marked_ = state_.pose; }
 
-  /// Calls visit(facet index) for every facet whose box meets the cube of half width `range` (m) about a world point, by
-  /// Bullet's BVH, in rising order.
+  /// Calls visit(facet index) for every facet whose box meets the cube of half width `range` (m) about a
+  /// world point, by Bullet's BVH, in rising order.
   void facets_near(const Vec3& point, double range, std::vector<int>& facets) const;
 
  private:

@@ -14,7 +14,8 @@ struct ClosestPoint {
   Feature feature;
 };
 
-// Closest point of a triangle to p, with the feature it lies on. Ericson, Real-Time Collision Detection (2005), 5.1.5.
+// Closest point of a triangle to p, with the feature it lies on. Ericson, Real-Time Collision Detection
+// (2005), 5.1.5.
 ClosestPoint closest_point(const Vec3& p, const Facet& f) {
   const Vec3 ab = f.b - f.a, ac = f.c - f.a, ap = p - f.a;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
@@ -44,11 +45,12 @@ struct Touch {
   int facet;
 };
 
-constexpr double kSameContact = 0.5;       // cosine of the largest turn over which a contact goes on
-constexpr double kSameSide = 0.7;          // cosine within which a remembered normal tells the side of a face
-constexpr double kSamePlane = 0.5;         // of the radius: distance within which a remembered plane is that of a face
-constexpr double kBornDeep = 0.5;          // of the radius: overlap of a contact whose sphere comes out of a solid
-constexpr double kPlaneTolerance = 1e-7;   // of the radius
+constexpr double kSameContact = 0.5;  // cosine of the largest turn over which a contact goes on
+constexpr double kSameSide = 0.7;     // cosine within which a remembered normal tells the side of a face
+constexpr double kSamePlane =
+    0.5;  // of the radius: distance within which a remembered plane is that of a face
+constexpr double kBornDeep = 0.5;  // of the radius: overlap of a contact whose sphere comes out of a solid
+constexpr double kPlaneTolerance = 1e-7;  // of the radius
 
 // A contact of the step before, mesh frame.
 struct Remembered {
@@ -63,8 +65,8 @@ void collect(const MeshBody& body, std::span<const FacetRef> facets, const Vec3&
     const Facet& f = body.facets()[ref.facet];
     const double height = (centre - f.a).dot(f.normal);
     if (height >= radius) continue;
-    // +1: the contact began in front of the face, -1: behind, 0: none remembered. Another wall of the same mesh may have the same
-    // normal, or the opposite one, but not at this distance from the centre.
+    // +1: the contact began in front of the face, -1: behind, 0: none remembered. Another wall of the same
+    // mesh may have the same normal, or the opposite one, but not at this distance from the centre.
     double side = 0, nearest = kSamePlane * radius;
     bool pressed_through = false;  // another face, that looks the other way
     for (const Remembered& r : remembered) {
@@ -77,7 +79,9 @@ void collect(const MeshBody& body, std::span<const FacetRef> facets, const Vec3&
     if (height <= -radius && side == 0) continue;
     const ClosestPoint closest = closest_point(centre, f);
     const Vec3 away = centre - closest.point;
-    const double aside2 = away.squaredNorm() - height * height;  // a foot on the rim, straight below the centre, is one of the face
+    const double aside2 =
+        away.squaredNorm() -
+        height * height;  // a foot on the rim, straight below the centre, is one of the face
     if (closest.feature == Feature::face || aside2 <= std::pow(kPlaneTolerance * radius, 2)) {
       if (body.mesh().closed) {
         if (side <= 0 && (height < 0 || pressed_through)) continue;
@@ -89,7 +93,8 @@ void collect(const MeshBody& body, std::span<const FacetRef> facets, const Vec3&
       if (overlap > 0) touches.push_back({closest.point, side * f.normal, overlap, Feature::face, ref.facet});
       continue;
     }
-    if (body.mesh().closed && height < 0) continue;  // the neighbour in front of which the centre lies has this feature too
+    if (body.mesh().closed && height < 0)
+      continue;  // the neighbour in front of which the centre lies has this feature too
     const double distance = away.norm();
     if (distance >= radius || distance == 0) continue;
     touches.push_back({closest.point, away / distance, radius - distance, closest.feature, ref.facet});
@@ -105,8 +110,9 @@ bool hidden(const Touch& touch, const Touch& by, double radius) {
 
 }  // namespace
 
-int update_mesh_contacts(const std::vector<std::unique_ptr<MeshBody>>& bodies, std::span<const FacetRef> facets,
-                         const Vec3& centre, double radius, std::span<MeshContact> slots) {
+int update_mesh_contacts(const std::vector<std::unique_ptr<MeshBody>>& bodies,
+                         std::span<const FacetRef> facets, const Vec3& centre, double radius,
+                         std::span<MeshContact> slots) {
   thread_local std::vector<Touch> touches, accepted;
   std::array<bool, kMeshContactSlots> goes_on{};
   struct Fresh {
@@ -125,7 +131,8 @@ int update_mesh_contacts(const std::vector<std::unique_ptr<MeshBody>>& bodies, s
     std::size_t remembered_count = 0;
     for (const MeshContact& slot : slots)
       if (slot.body == b) {
-        remembered[remembered_count++] = {pose.rotation.conjugate() * slot.normal, slot.overlap + slot.excess};
+        remembered[remembered_count++] = {pose.rotation.conjugate() * slot.normal,
+                                          slot.overlap + slot.excess};
       }
 
     touches.clear();
@@ -138,7 +145,8 @@ int update_mesh_contacts(const std::vector<std::unique_ptr<MeshBody>>& bodies, s
       return a.facet < c.facet;
     });
     for (const Touch& touch : touches)
-      if (std::none_of(accepted.begin(), accepted.end(), [&](const Touch& by) { return hidden(touch, by, radius); }))
+      if (std::none_of(accepted.begin(), accepted.end(),
+                       [&](const Touch& by) { return hidden(touch, by, radius); }))
         accepted.push_back(touch);
 
     for (const Touch& touch : accepted) {

@@ -10,10 +10,10 @@ namespace scree {
 
 /// A contact of a sphere with a mesh body, with its memory. World axes.
 struct MeshContact {
-  int body = -1;          ///< index of the mesh body; -1: slot is free
-  Vec3 normal;            ///< from the surface to the sphere, unit
-  double overlap = 0;     ///< m; above the radius when the centre has been pressed through the surface
-  double excess = 0;      ///< m; overlap that is not counted: a sphere that comes out of a solid is not shot off
+  int body = -1;       ///< index of the mesh body; -1: slot is free
+  Vec3 normal;         ///< from the surface to the sphere, unit
+  double overlap = 0;  ///< m; above the radius when the centre has been pressed through the surface
+  double excess = 0;   ///< m; overlap that is not counted: a sphere that comes out of a solid is not shot off
   ContactHistory history;
 };
 
@@ -26,17 +26,19 @@ struct FacetRef {
   int facet;
 };
 
-/// Finds the contacts of a sphere with the facets listed (sorted by body) and updates its slots: a contact that goes on keeps its memory,
-/// one that has ended is freed.
+/// Finds the contacts of a sphere with the facets listed (sorted by body) and updates its slots: a contact
+/// that goes on keeps its memory, one that has ended is freed.
 ///
-/// Priority is face, edge, vertex. An accepted contact with foot p and normal n hides every edge or vertex whose closest point lies
-/// in or behind the plane (p, n): so seams of coplanar triangles, and the neighbours across a convex edge, are felt once,
-/// with conforming and with non-conforming triangulations. A contact goes on if its normal turned by less than 60 degrees.
-/// Closed meshes push from the outside only; a centre that was pressed through a face from the outside is still pushed
-/// back out, one that came from the inside is left alone: a contact that begins with more than half of the radius inside counts only
-/// what it presses deeper than at its least. Sheets push on the side where the contact began.
-/// Returns the number of contacts that found no slot.
-int update_mesh_contacts(const std::vector<std::unique_ptr<MeshBody>>& bodies, std::span<const FacetRef> facets,
-                         const Vec3& centre, double radius, std::span<MeshContact> slots);
+/// Priority is face, edge, vertex. An accepted contact with foot p and normal n hides every edge or vertex
+/// whose closest point lies in or behind the plane (p, n): so seams of coplanar triangles, and the neighbours
+/// across a convex edge, are felt once, with conforming and with non-conforming triangulations. A contact
+/// goes on if its normal turned by less than 60 degrees. Closed meshes push from the outside only; a centre
+/// that was pressed through a face from the outside is still pushed back out, one that came from the inside
+/// is left alone: a contact that begins with more than half of the radius inside counts only what it presses
+/// deeper than at its least. Sheets push on the side where the contact began. Returns the number of contacts
+/// that found no slot.
+int update_mesh_contacts(const std::vector<std::unique_ptr<MeshBody>>& bodies,
+                         std::span<const FacetRef> facets, const Vec3& centre, double radius,
+                         std::span<MeshContact> slots);
 
 }  // namespace scree

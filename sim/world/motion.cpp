@@ -20,7 +20,8 @@ BodyState Motion::at(double time) const {
     state.pose = keys_.back().pose;
     return state;
   }
-  const auto next = std::upper_bound(keys_.begin(), keys_.end(), time, [](double t, const Key& k) { return t < k.time; });
+  const auto next =
+      std::upper_bound(keys_.begin(), keys_.end(), time, [](double t, const Key& k) { return t < k.time; });
   const Key &a = *(next - 1), &b = *next;
   const double span = b.time - a.time, share = (time - a.time) / span;
   state.pose.position = a.pose.position + share * (b.pose.position - a.pose.position);

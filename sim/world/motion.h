@@ -14,8 +14,8 @@ struct BodyState {
   Vec3 velocity_at(const Vec3& point) const { return velocity + spin.cross(point - pose.position); }
 };
 
-/// Poses at times; linear in position and spherical-linear in rotation between them, held outside. Velocity is the exact
-/// derivative of the pose, so that contacts drag what the body carries.
+/// Poses at times; linear in position and spherical-linear in rotation between them, held outside. Velocity
+/// is the exact derivative of the pose, so that contacts drag what the body carries.
 class Motion {
  public:
   struct Key {

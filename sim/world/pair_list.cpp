@@ -6,9 +6,10 @@
 
 namespace scree {
 namespace {
-// Skin of a sphere at rest, as a share of its radius: small enough to list few pairs that do not touch, large enough that a
-// settling pile seldom repairs.
+// Skin of a sphere at rest, as a share of its radius: small enough to list few pairs that do not touch, large
+// enough that a settling pile seldom repairs.
 constexpr double kSkinAtRest = 0.12;
+constexpr int kPart = 64;  // spheres that one task looks up
 }  // namespace
 
 void PairList::list_anew(int i, const Spheres& s, double horizon) {
@@ -40,8 +41,9 @@ void PairList::rebuild(const Spheres& s, const std::vector<int>& order, double h
       if (!touching[p]) continue;
       const int a = new_index[i], b = new_index[partner_[p]];
       if (a < 0 || b < 0) continue;
-      kept.push_back({static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint64_t>(std::max(a, b)), p,
-                      a > b});
+      kept.push_back(
+          {static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint64_t>(std::max(a, b)), p,
+           a > b});
     }
   std::sort(kept.begin(), kept.end(), [](const Kept& a, const Kept& b) { return a.key < b.key; });
   const std::vector<ContactHistory> old_history = history;
@@ -109,19 +111,37 @@ const std::vector<int>& PairList::repair(const Spheres& s, double horizon) {
   return listed_;
 }
 
+void PairList::find_pairs_of(int i, std::vector<std::uint64_t>& found) const {
+  const Vec3& x = grid_.position(i);
+  const double reach = grid_.reach(i);
+  grid_.query(i, [&](int j) {
+    if (dirty_[j] && j < i) return;  // found from the other side
+    const double range = reach + grid_.reach(j);
+    if ((x - grid_.position(j)).squaredNorm() >= range * range) return;
+    found.push_back(static_cast<std::uint64_t>(std::min(i, j)) << 32 |
+                    static_cast<std::uint64_t>(std::max(i, j)));
+  });
+}
+
 void PairList::find_pairs_of(const std::vector<int>& listed, const Spheres& s) {
   found_.clear();
   for (const int i : listed) dirty_[i] = 1;
-  for (const int i : listed) {
-    if (s.lost[i]) continue;
-    const Vec3& x = grid_.position(i);
-    const double reach = grid_.reach(i);
-    grid_.query(i, [&](int j) {
-      if (dirty_[j] && j < i) return;  // found from the other side
-      const double range = reach + grid_.reach(j);
-      if ((x - grid_.position(j)).squaredNorm() >= range * range) return;
-      found_.push_back(static_cast<std::uint64_t>(std::min(i, j)) << 32 | static_cast<std::uint64_t>(std::max(i, j)));
+  const int count = static_cast<int>(listed.size());
+  if (for_ranges_ && count > kPart) {
+    const int parts = (count + kPart - 1) / kPart;
+    if (static_cast<int>(found_parts_.size()) < parts) found_parts_.resize(parts);
+    for_ranges_(parts, [&](int first, int last) {
+      for (int part = first; part < last; ++part) {
+        found_parts_[part].clear();
+        for (int k = part * kPart; k < std::min(count, (part + 1) * kPart); ++k)
+          if (!s.lost[listed[k]]) find_pairs_of(listed[k], found_parts_[part]);
+      }
     });
+    for (int part = 0; part < parts; ++part)
+      found_.insert(found_.end(), found_parts_[part].begin(), found_parts_[part].end());
+  } else {
+    for (const int i : listed)
+      if (!s.lost[i]) find_pairs_of(i, found_);
   }
   std::sort(found_.begin(), found_.end());
 }
@@ -141,7 +161,8 @@ void PairList::merge(const Spheres& s) {
     const int p_end = i < rows() ? begin_[i + 1] : 0;
     while (true) {
       const bool has_found = f < found_.size() && static_cast<int>(found_[f] >> 32) == i;
-      const int found = has_found ? static_cast<int>(found_[f] & 0xffffffffu) : std::numeric_limits<int>::max();
+      const int found =
+          has_found ? static_cast<int>(found_[f] & 0xffffffffu) : std::numeric_limits<int>::max();
       if (p < p_end && partner_[p] <= found) {
         const int j = partner_[p];
         if (j == found || !(dirty_[i] || dirty_[j])) {

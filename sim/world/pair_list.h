@@ -1,14 +1,16 @@
 #pragma once
 // Pairs of spheres that touch or soon may, with the memory of their contacts.
 //
-// Each sphere has a skin. A pair is listed when the two reaches (radius plus skin), taken at the places where the spheres were when last listed,
-// overlap; the list is complete as long as no sphere has moved further than its own skin. When one has, it and all others that
-// used up half of theirs are listed anew from the grid; pairs of the rest are kept as they stand. So a fast sphere repairs its own
-// pairs and nobody else's. The skin grows with speed.
+// Each sphere has a skin. A pair is listed when the two reaches (radius plus skin), taken at the places where
+// the spheres were when last listed, overlap; the list is complete as long as no sphere has moved further
+// than its own skin. When one has, it and all others that used up half of theirs are listed anew from the
+// grid; pairs of the rest are kept as they stand. So a fast sphere repairs its own pairs and nobody else's.
+// The skin grows with speed.
 //
-// The list is in rows: the pairs of owner i (the smaller index) lie side by side, sorted by partner. Contact memory lies
-// beside the pair and moves with it: no look-up in a step.
+// The list is in rows: the pairs of owner i (the smaller index) lie side by side, sorted by partner. Contact
+// memory lies beside the pair and moves with it: no look-up in a step.
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "sim/contact/rrlinear.h"
@@ -19,8 +21,13 @@ namespace scree {
 
 class PairList {
  public:
-  /// Lists everything from scratch after spheres were added or re-sorted. `order[k]` is the old index of new sphere k, or -1
-  /// for a new one; contact memory of old pairs is carried over.
+  /// Runs a body over parts of [0, count), in any order and on any thread.
+  using ForRanges = std::function<void(int count, const std::function<void(int first, int last)>& body)>;
+  /// Lets several threads look for pairs; what is found does not depend on it.
+  void use_threads(ForRanges for_ranges) { for_ranges_ = std::move(for_ranges); }
+
+  /// Lists everything from scratch after spheres were added or re-sorted. `order[k]` is the old index of new
+  /// sphere k, or -1 for a new one; contact memory of old pairs is carried over.
   void rebuild(const Spheres& spheres, const std::vector<int>& order, double horizon);
 
   /// True if sphere i may have left its skin.
@@ -30,8 +37,8 @@ class PairList {
     return dx * dx + dy * dy + dz * dz > skin2_[i];
   }
 
-  /// Repairs the lists of all spheres that used up half of their skin. `horizon` (s): skins hold what a sphere moves in
-  /// this time. Returns the spheres listed anew, rising; valid until the next call.
+  /// Repairs the lists of all spheres that used up half of their skin. `horizon` (s): skins hold what a
+  /// sphere moves in this time. Returns the spheres listed anew, rising; valid until the next call.
   const std::vector<int>& repair(const Spheres& spheres, double horizon);
 
   /// Takes a sphere out for good.
@@ -59,6 +66,7 @@ class PairList {
  private:
   void list_anew(int i, const Spheres& spheres, double horizon);
   void find_pairs_of(const std::vector<int>& listed, const Spheres& spheres);
+  void find_pairs_of(int i, std::vector<std::uint64_t>& found) const;
   void merge(const Spheres& spheres);
   void index_incoming(int count);
 
@@ -68,6 +76,8 @@ class PairList {
   std::vector<std::uint8_t> dirty_;
   std::vector<int> listed_, dropped_;
   std::vector<std::uint64_t> found_;  // owner << 32 | partner
+  std::vector<std::vector<std::uint64_t>> found_parts_;
+  ForRanges for_ranges_;
 
   // Buffers of merge, kept to avoid allocation.
   std::vector<int> new_begin_, new_partner_;

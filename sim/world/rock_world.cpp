@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kTooFast = 500.0;  // m/s; no fall of this field is a tenth of it
 
-// Collision groups. Where Bullet moves the rock it meets fixed balls and tools, which do not meet each other. In the
-// explicit engine spheres meet nothing of Bullet's but queries and bodies that others add.
+// Collision groups. Where Bullet moves the rock it meets fixed balls and tools, which do not meet each other.
+// In the explicit engine spheres meet nothing of Bullet's but queries and bodies that others add.
 constexpr int kRockGroup = 1 << 10, kFixedGroup = 1 << 11, kToolGroup = 1 << 12;
 
 int mask_of(int group, bool bullet_moves_spheres) {
@@ -53,7 +53,8 @@ void RockWorld::add_spheres(const std::vector<NewSphere>& spheres) {
     const bool dynamic = bullet_moves_spheres() && !s.fixed;
     btVector3 inertia(0, 0, 0);
     if (dynamic) shapes_.back()->calculateLocalInertia(mass, inertia);
-    btRigidBody::btRigidBodyConstructionInfo info(dynamic ? mass : 0.0, nullptr, shapes_.back().get(), inertia);
+    btRigidBody::btRigidBodyConstructionInfo info(dynamic ? mass : 0.0, nullptr, shapes_.back().get(),
+                                                  inertia);
     info.m_startWorldTransform.setIdentity();
     info.m_startWorldTransform.setOrigin(to_bullet(s.position));
     auto body = std::make_unique<btRigidBody>(info);
@@ -102,7 +103,8 @@ Snapshot RockWorld::snapshot() const {
     shot.grains.push_back({spheres_.id[i], spheres_.place[i].vec(), spheres_.velocity[i].vec(),
                            2.0 * spheres_.place[i].w, spheres_.velocity[i].w, spheres_.dump[i]});
   }
-  std::sort(shot.grains.begin(), shot.grains.end(), [](const Grain& a, const Grain& b) { return a.id < b.id; });
+  std::sort(shot.grains.begin(), shot.grains.end(),
+            [](const Grain& a, const Grain& b) { return a.id < b.id; });
   return shot;
 }
 
@@ -150,10 +152,12 @@ void RockWorld::check_spheres() {
     const Vec3 x = spheres_.place[i].vec(), v = spheres_.velocity[i].vec();
     const bool finite = x.allFinite() && v.allFinite() && spheres_.spin[i].vec().allFinite();
     if (!finite || v.squaredNorm() > kTooFast * kTooFast)
-      throw BlowUp(fmt::format("the run blew up at t = {:.4f} s (a sphere of {:.3f} m {}): lower numerics.time_step_safety",
-                               time_, 2.0 * spheres_.place[i].w,
-                               finite ? fmt::format("moves at {:.0f} m/s", v.norm()) : "has no finite position"));
-    if ((x.array() < settings_.domain_low.array()).any() || (x.array() > settings_.domain_high.array()).any()) {
+      throw BlowUp(fmt::format(
+          "the run blew up at t = {:.4f} s (a sphere of {:.3f} m {}): lower numerics.time_step_safety", time_,
+          2.0 * spheres_.place[i].w,
+          finite ? fmt::format("moves at {:.0f} m/s", v.norm()) : "has no finite position"));
+    if ((x.array() < settings_.domain_low.array()).any() ||
+        (x.array() > settings_.domain_high.array()).any()) {
       spheres_.lost[i] = 1;
       ++statistics_.lost_particles;
       statistics_.lost_mass += spheres_.velocity[i].w;

@@ -1,9 +1,10 @@
 #pragma once
 // A Bullet dynamics world of rock: one scene, two engines behind this interface.
 //
-// Spheres are Bullet rigid bodies with sphere shapes and meshes are kinematic Bullet bodies in both engines. `RrlinearWorld` steps the
-// contact law explicitly on its own arrays; update_bullet() writes the bodies back, so that ray tests, debug drawing and
-// serialisation of Bullet see the scene (stepSimulation() does it by itself); `ImpulseWorld` leaves the stepping to Bullet's solver.
+// Spheres are Bullet rigid bodies with sphere shapes and meshes are kinematic Bullet bodies in both engines.
+// `RrlinearWorld` steps the contact law explicitly on its own arrays; update_bullet() writes the bodies back,
+// so that ray tests, debug drawing and serialisation of Bullet see the scene (stepSimulation() does it by
+// itself); `ImpulseWorld` leaves the stepping to Bullet's solver.
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
@@ -23,32 +24,33 @@
 
 namespace scree {
 
-/// The run went out of bounds (not finite, or faster than anything can fall); the message says when and what to change.
+/// The run went out of bounds (not finite, or faster than anything can fall); the message says when and what
+/// to change.
 struct BlowUp : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 struct WorldSettings {
   Material material;
-  Vec3 gravity{0, 0, -9.81};             ///< m/s2
+  Vec3 gravity{0, 0, -9.81};                                                  ///< m/s2
   Vec3 domain_low = Vec3::Constant(-1e6), domain_high = Vec3::Constant(1e6);  ///< m; a sphere outside is lost
-  double time_step_safety = 0.8;         ///< share of the stable step (rrlinear)
-  double fixed_time_step = 0;            ///< s; above 0 it is used instead (rrlinear; for tests)
-  bool sleep = false;                    ///< spheres at rest cost nothing until disturbed (rrlinear; see sleep.h)
-  int threads = 1;                       ///< worker threads of this world (rrlinear)
-  double impulse_time_step = 1e-3;       ///< s (impulse)
-  int impulse_iterations = 20;           ///< solver iterations (impulse)
+  double time_step_safety = 0.8;    ///< share of the stable step (rrlinear)
+  double fixed_time_step = 0;       ///< s; above 0 it is used instead (rrlinear; for tests)
+  bool sleep = false;               ///< spheres at rest cost nothing until disturbed (rrlinear; see sleep.h)
+  int threads = 1;                  ///< worker threads of this world (rrlinear)
+  double impulse_time_step = 1e-3;  ///< s (impulse)
+  int impulse_iterations = 20;      ///< solver iterations (impulse)
 };
 
 struct WorldStatistics {
   std::int64_t steps = 0;
-  double particle_steps = 0;             ///< sum over steps of spheres moved
+  double particle_steps = 0;                    ///< sum over steps of spheres moved
   double time_step_min = 0, time_step_max = 0;  ///< s
-  double largest_overlap_ratio = 0;      ///< overlap over the smaller radius
+  double largest_overlap_ratio = 0;             ///< overlap over the smaller radius
   std::int64_t lost_particles = 0;
-  double lost_mass = 0;                  ///< kg
-  std::int64_t list_repairs = 0;         ///< times the pair list was repaired
-  std::int64_t asleep = 0;               ///< spheres asleep now
+  double lost_mass = 0;           ///< kg
+  std::int64_t list_repairs = 0;  ///< times the pair list was repaired
+  std::int64_t asleep = 0;        ///< spheres asleep now
 };
 
 /// Energies of the scene (J).
@@ -114,10 +116,10 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   WorldStatistics statistics_;
   double time_ = 0;
   Spheres spheres_;
-  std::vector<std::uint8_t> fixed_;                 // by index
-  std::vector<std::unique_ptr<MeshBody>> meshes_;   // null: removed
-  std::vector<std::unique_ptr<btRigidBody>> bodies_;       // by id
-  std::vector<std::unique_ptr<btSphereShape>> shapes_;     // by id
+  std::vector<std::uint8_t> fixed_;                     // by index
+  std::vector<std::unique_ptr<MeshBody>> meshes_;       // null: removed
+  std::vector<std::unique_ptr<btRigidBody>> bodies_;    // by id
+  std::vector<std::unique_ptr<btSphereShape>> shapes_;  // by id
 };
 
 /// Makes the world of an engine.

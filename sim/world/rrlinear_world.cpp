@@ -12,19 +12,29 @@
 namespace scree {
 namespace {
 
-constexpr int kStepsBetweenChecks = 20;   // of the stable step, of lost and runaway spheres
-constexpr int kStepsBetweenSorts = 400;   // after which neighbours in space are neighbours in memory again
-constexpr double kSkinHorizon = 20.0;     // steps that a sphere's skin should last
-constexpr double kToolSkin = 0.5;         // of the smallest radius: how far a tool moves before facets are listed anew
-constexpr double kNearGap = 0.05;         // of the smaller radius: gap below which a contact is expected (stable step)
-constexpr double kMostTravel = 0.2;       // of the radius: most that a sphere may travel in one step
-constexpr double kLargestStep = 0.05;     // s; for scenes with nothing stiff in them
-constexpr int kRangeSize = 1024;          // spheres a task
+constexpr int kStepsBetweenChecks = 20;  // of the stable step, of lost and runaway spheres
+constexpr int kStepsBetweenSorts = 400;  // after which neighbours in space are neighbours in memory again
+constexpr double kSkinHorizon = 20.0;    // steps that a sphere's skin should last
+constexpr double kToolSkin =
+    0.5;  // of the smallest radius: how far a tool moves before facets are listed anew
+constexpr double kNearGap =
+    0.05;  // of the smaller radius: gap below which a contact is expected (stable step)
+constexpr double kMostTravel = 0.2;    // of the radius: most that a sphere may travel in one step
+constexpr double kLargestStep = 0.05;  // s; for scenes with nothing stiff in them
+constexpr int kRangeSize = 1024;       // spheres a task
 
 }  // namespace
 
-RrlinearWorld::RrlinearWorld(const WorldSettings& settings) : RockWorld(settings), law_(settings.material), sleep_(settings.sleep) {
-  if (several_threads()) arena_ = std::make_unique<tbb::task_arena>(settings_.threads);
+RrlinearWorld::RrlinearWorld(const WorldSettings& settings)
+    : RockWorld(settings), law_(settings.material), sleep_(settings.sleep) {
+  if (!several_threads()) return;
+  arena_ = std::make_unique<tbb::task_arena>(settings_.threads);
+  pairs_.use_threads([this](int count, const std::function<void(int, int)>& body) {
+    arena_->execute([&] {
+      tbb::parallel_for(tbb::blocked_range<int>(0, count),
+                        [&](const tbb::blocked_range<int>& r) { body(r.begin(), r.end()); });
+    });
+  });
 }
 
 std::unique_ptr<RockWorld> make_rrlinear_world(const WorldSettings& settings) {
@@ -47,7 +57,9 @@ double RrlinearWorld::for_ranges(int count, Body&& body) {
   return largest.load();
 }
 
-double RrlinearWorld::horizon() const { return kSkinHorizon * dt_; }
+double RrlinearWorld::horizon() const {
+  return kSkinHorizon * dt_;
+}
 
 int RrlinearWorld::stepSimulation(btScalar span, int, btScalar) {
   const auto before = statistics_.steps;
@@ -64,15 +76,12 @@ void RrlinearWorld::sphere_lost(int index) {
 void RrlinearWorld::advance_to(double end) {
   if (changed_) prepare();
   while (time_ < end) {
-    if (statistics_.steps >= next_sort_) {
-      next_sort_ = statistics_.steps + kStepsBetweenSorts;
-      prepare();
-    }
+    if (statistics_.steps >= next_sort_) prepare();
     if (steps_to_check_-- <= 0) {
       steps_to_check_ = kStepsBetweenChecks;
       check_spheres();
       if (repair_due_) repair();
-      sleep_.look(spheres_, pairs_, watched_, total_force_, law_, time_, settings_.gravity);
+      sleep_.look(spheres_, pairs_, watched_, law_, time_, settings_.gravity);
       dt_ = stable_step(false);
     }
     // The last step is cut to end on time; a remainder below a millionth of a step is rounding.
@@ -85,6 +94,7 @@ void RrlinearWorld::advance_to(double end) {
 
 void RrlinearWorld::prepare() {
   changed_ = false;
+  next_sort_ = statistics_.steps + kStepsBetweenSorts;
   const std::vector<int> order = sort_spheres(spheres_, fixed_);
   {
     std::vector<std::uint8_t> fixed(fixed_.size());
@@ -120,10 +130,6 @@ void RrlinearWorld::prepare() {
   list_facets(all, true);
   find_watched();
   for (int i = 0; i < n; ++i) bereft[i] |= watched_[i];
-  std::vector<Quad> total_force(n);
-  for (int k = 0; k < n; ++k)
-    if (order[k] < static_cast<int>(total_force_.size())) total_force[k] = total_force_[order[k]];
-  total_force_.swap(total_force);
   sleep_.renumber(order, spheres_, pairs_, bereft, time_, settings_.gravity.norm());
   own_step2_.assign(spheres_.movable, 0.0);
   dt_ = stable_step(true);
@@ -203,7 +209,8 @@ void RrlinearWorld::list_facets(const std::vector<int>& listed, bool tools_moved
       facet_rows_.push_back(i);
       slot = static_cast<int>(slots.size());
       if (slot_of_[i] >= 0)
-        slots.insert(slots.end(), slots_.begin() + slot_of_[i], slots_.begin() + slot_of_[i] + kMeshContactSlots);
+        slots.insert(slots.end(), slots_.begin() + slot_of_[i],
+                     slots_.begin() + slot_of_[i] + kMeshContactSlots);
       else
         slots.resize(slots.size() + kMeshContactSlots);
     }
@@ -283,7 +290,8 @@ double RrlinearWorld::pair_forces(int first, int last) {
   return overlap_ratio;
 }
 
-// Sums over the contacts in which a sphere is partner, by rising owner: the order in which one thread scatters them.
+// Sums over the contacts in which a sphere is partner, by rising owner: the order in which one thread
+// scatters them.
 void RrlinearWorld::gather(int first, int last) {
   for (int j = first; j < last; ++j) {
     if (spheres_.asleep[j]) continue;
@@ -368,16 +376,16 @@ bool RrlinearWorld::integrate(int first, int last, double dt) {
     Quad& x = spheres_.place[i];
     Quad& v = spheres_.velocity[i];
     Quad& w = spheres_.spin[i];
-    const Quad& f = spheres_.force[i];
+    Quad& f = spheres_.force[i];
     const Quad& t = spheres_.torque[i];
     Quad& fi = incoming_force_[i];
     Quad& ti = incoming_torque_[i];
-    total_force_[i] = {fi.x + f.x, fi.y + f.y, fi.z + f.z, fi.w + f.w};
-    const double a = always || fi.w + f.w > 0 ? alpha : 0.0;
+    f = {fi.x + f.x, fi.y + f.y, fi.z + f.z, fi.w + f.w};
+    const double a = always || f.w > 0 ? alpha : 0.0;
     const double per_mass = dt / v.w, per_inertia = dt / w.w;
-    v.x += per_mass * locally_damped(fi.x + f.x + v.w * g.x(), v.x, a);
-    v.y += per_mass * locally_damped(fi.y + f.y + v.w * g.y(), v.y, a);
-    v.z += per_mass * locally_damped(fi.z + f.z + v.w * g.z(), v.z, a);
+    v.x += per_mass * locally_damped(f.x + v.w * g.x(), v.x, a);
+    v.y += per_mass * locally_damped(f.y + v.w * g.y(), v.y, a);
+    v.z += per_mass * locally_damped(f.z + v.w * g.z(), v.z, a);
     w.x += per_inertia * locally_damped(ti.x + t.x, w.x, a);
     w.y += per_inertia * locally_damped(ti.y + t.y, w.y, a);
     w.z += per_inertia * locally_damped(ti.z + t.z, w.z, a);
@@ -402,7 +410,8 @@ void RrlinearWorld::step(double dt) {
   forces();
   if (for_ranges(spheres_.movable, [&](int a, int b) { return integrate(a, b, dt) ? 1.0 : 0.0; }) > 0)
     repair_due_ = true;
-  statistics_.particle_steps += static_cast<double>(spheres_.movable - statistics_.lost_particles - sleep_.asleep());
+  statistics_.particle_steps +=
+      static_cast<double>(spheres_.movable - statistics_.lost_particles - sleep_.asleep());
   sleep_.wake_disturbed(spheres_, pairs_);
   statistics_.asleep = sleep_.asleep();
   time_ += dt;
@@ -487,7 +496,8 @@ Energy RrlinearWorld::energy() const {
   for (const int i : facet_rows_)
     for (int k = 0; k < kMeshContactSlots; ++k) {
       const MeshContact& c = slots_[slot_of_[i] + k];
-      if (c.body >= 0) e.elastic += elastic_energy(ball_facet(law_, spheres_.place[i].w), c.overlap, c.history);
+      if (c.body >= 0)
+        e.elastic += elastic_energy(ball_facet(law_, spheres_.place[i].w), c.overlap, c.history);
     }
   return e;
 }

@@ -2,17 +2,19 @@
 // The explicit engine: the rrlinear law, stepped by leapfrog with synchronised contact memory.
 //
 // One step from t to t + dt:
-//   1. forces at x(t): pairs (PairList), meshes (mesh_contact), each through contact_step(); the displacement increments of shear and
-//      rolling are v(t - dt/2) dt, exactly what led from x(t - dt) to x(t), so memory and positions never run apart (Vyas et al.,
-//      Computer Physics Communications 310, 2025);
+//   1. forces at x(t): pairs (PairList), meshes (mesh_contact), each through contact_step(); the displacement
+//   increments of shear and
+//      rolling are v(t - dt/2) dt, exactly what led from x(t - dt) to x(t), so memory and positions never run
+//      apart (Vyas et al., Computer Physics Communications 310, 2025);
 //   2. gravity and local damping; v(t + dt/2) = v(t - dt/2) + a dt; x(t + dt) = x(t) + v(t + dt/2) dt;
 //   3. tools move; spheres that may have left their skin are listed anew.
-// The step is recomputed as the run goes on: safety * min over spheres and axes of sqrt(m / k), sqrt(I / k_rot) with k summed over the
-// contacts a sphere has and those it may soon have. Spheres at rest may sleep (sleep.h).
+// The step is recomputed as the run goes on: safety * min over spheres and axes of sqrt(m / k), sqrt(I /
+// k_rot) with k summed over the contacts a sphere has and those it may soon have. Spheres at rest may sleep
+// (sleep.h).
 //
-// Sums over contacts run in a fixed order: a sphere's force is (contacts in which it is partner, by owner) + (contacts it owns, by
-// partner) + (meshes), whether one thread adds as it goes or several gather afterwards, so results are bitwise the same for any
-// number of threads.
+// Sums over contacts run in a fixed order: a sphere's force is (contacts in which it is partner, by owner) +
+// (contacts it owns, by partner) + (meshes), whether one thread adds as it goes or several gather afterwards,
+// so results are bitwise the same for any number of threads.
 #include <tbb/task_arena.h>
 
 #include "sim/contact/rrlinear.h"
@@ -63,23 +65,22 @@ class RrlinearWorld final : public RockWorld {
   double for_ranges(int count, Body&& body);
 
   ContactLaw law_;
-  bool changed_ = true;      // spheres or meshes were added or removed
-  bool repair_due_ = false;  // a sphere may have left its skin, or was lost
+  bool changed_ = true;            // spheres or meshes were added or removed
+  bool repair_due_ = false;        // a sphere may have left its skin, or was lost
   std::vector<double> own_step2_;  // square of each sphere's own stable step, s2
-  double dt_ = 0;            // stable step, s
-  double last_dt_ = 0;       // the step that led to the present places, s
+  double dt_ = 0;                  // stable step, s
+  double last_dt_ = 0;             // the step that led to the present places, s
   int steps_to_check_ = 0;
   std::int64_t next_sort_ = 0;  // step
   PairList pairs_;
   std::vector<Quad> incoming_force_, incoming_torque_;  // from contacts in which the sphere is partner
-  std::vector<Quad> total_force_;                       // of all contacts in the last step, N; w: their number
   std::vector<PairForce> pair_force_;                   // several threads only
   // Facets near each movable sphere, in rows; spheres with none have an empty row.
   std::vector<int> facet_begin_;
   std::vector<FacetRef> facets_;
-  std::vector<int> slot_of_;           // first slot of a sphere, or -1
+  std::vector<int> slot_of_;  // first slot of a sphere, or -1
   std::vector<MeshContact> slots_;
-  std::vector<int> facet_rows_;        // spheres with facets, rising
+  std::vector<int> facet_rows_;  // spheres with facets, rising
   double tool_skin_ = 0;
   Sleep sleep_;
   std::vector<std::uint8_t> watched_;  // near a tool that moves: does not sleep

@@ -6,10 +6,10 @@
 namespace scree {
 namespace {
 
-constexpr double kWindow = 3.0;        // times sqrt(smallest radius / g)
-constexpr double kQuietTravel = 0.005; // of the radius, in one window
-constexpr double kQuietPull = 0.1;     // of the weight
-constexpr double kWake = 0.1;          // of (weight + mean contact force)
+constexpr double kWindow = 3.0;         // times sqrt(smallest radius / g)
+constexpr double kQuietTravel = 0.005;  // of the radius, in one window
+constexpr double kQuietPull = 0.1;      // of the weight
+constexpr double kWake = 0.1;           // of (weight + mean contact force)
 constexpr int kQuietWindows = 2;
 
 // Square of the change of a contact force that wakes sphere i (N^2).
@@ -31,8 +31,8 @@ double wake_limit2(int i, const Spheres& s, const PairList& pairs, const Contact
 
 }  // namespace
 
-void Sleep::renumber(const std::vector<int>& order, Spheres& s, PairList& pairs, const std::vector<std::uint8_t>& awake,
-                     double time, double gravity) {
+void Sleep::renumber(const std::vector<int>& order, Spheres& s, PairList& pairs,
+                     const std::vector<std::uint8_t>& awake, double time, double gravity) {
   const int n = s.movable;
   double smallest = 1e300;
   for (int i = 0; i < n; ++i) smallest = std::min(smallest, s.place[i].w);
@@ -80,11 +80,12 @@ void Sleep::mark_rows(const Spheres& s, const PairList& pairs) {
 
 void Sleep::forget_rest(int i, PairList& pairs) {
   for (int p = pairs.begin(i); p < pairs.end(i); ++p) pairs.rest_known[p] = 0;
-  for (int k = pairs.incoming_begin[i]; k < pairs.incoming_begin[i + 1]; ++k) pairs.rest_known[pairs.incoming_pair[k]] = 0;
+  for (int k = pairs.incoming_begin[i]; k < pairs.incoming_begin[i + 1]; ++k)
+    pairs.rest_known[pairs.incoming_pair[k]] = 0;
 }
 
-bool Sleep::look(Spheres& s, PairList& pairs, const std::vector<std::uint8_t>& awake, const std::vector<Quad>& contact_force,
-                 const ContactLaw& law, double time, const Vec3& gravity) {
+bool Sleep::look(Spheres& s, PairList& pairs, const std::vector<std::uint8_t>& awake, const ContactLaw& law,
+                 double time, const Vec3& gravity) {
   if (!on_ || time < window_end_) return false;
   window_end_ = time + window_;
   const double g = gravity.norm();
@@ -95,8 +96,9 @@ bool Sleep::look(Spheres& s, PairList& pairs, const std::vector<std::uint8_t>& a
     const double radius = s.place[i].w, weight = s.velocity[i].w * g;
     const double travel = (x - window_start_[i]).norm();
     window_start_[i] = x;
-    const double pull = (contact_force[i].vec() + s.velocity[i].w * gravity).norm();
-    const bool quiet = !awake[i] && contact_force[i].w > 0 && travel < kQuietTravel * radius && pull < kQuietPull * weight &&
+    const double pull = (s.force[i].vec() + s.velocity[i].w * gravity).norm();
+    const bool quiet = !awake[i] && s.force[i].w > 0 && travel < kQuietTravel * radius &&
+                       pull < kQuietPull * weight &&
                        s.velocity[i].vec().norm() * window_ < 2.0 * kQuietTravel * radius;
     quiet_windows_[i] = quiet ? static_cast<std::uint8_t>(quiet_windows_[i] + 1) : std::uint8_t{0};
     if (quiet_windows_[i] < kQuietWindows) continue;

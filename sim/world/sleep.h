@@ -1,11 +1,12 @@
 #pragma once
 // Which spheres sleep, and what wakes them.
 //
-// A sphere falls asleep when it has been quiet for two windows in a row: moved less than kQuietTravel of its radius, and pulled by
-// less than kQuietPull of its weight. Its place is then frozen; contacts between two sleepers keep their forces and are not computed.
-// Contacts between a sleeper and an awake sphere are: the sleeper remembers the force it has got used to, and wakes when the
-// force of any one contact has changed by more than kWake times (its weight + the mean of its contact forces). A sphere near a tool that
-// moves does not sleep.
+// A sphere falls asleep when it has been quiet for two windows in a row: moved less than kQuietTravel of its
+// radius, and pulled by less than kQuietPull of its weight. Its place is then frozen; contacts between two
+// sleepers keep their forces and are not computed. Contacts between a sleeper and an awake sphere are: the
+// sleeper remembers the force it has got used to, and wakes when the force of any one contact has changed by
+// more than kWake times (its weight + the mean of its contact forces). A sphere near a tool that moves does
+// not sleep.
 #include <vector>
 
 #include "sim/world/pair_list.h"
@@ -18,17 +19,18 @@ class Sleep {
   explicit Sleep(bool on) : on_(on) {}
   bool on() const { return on_; }
 
-  /// After spheres were re-sorted or added: `order[k]` is the old index of sphere k; what is known of it follows. `awake[i]`: must
-  /// not sleep.
-  void renumber(const std::vector<int>& order, Spheres& spheres, PairList& pairs, const std::vector<std::uint8_t>& awake,
-                double time, double gravity);
+  /// After spheres were re-sorted or added: `order[k]` is the old index of sphere k; what is known of it
+  /// follows. `awake[i]`: must not sleep.
+  void renumber(const std::vector<int>& order, Spheres& spheres, PairList& pairs,
+                const std::vector<std::uint8_t>& awake, double time, double gravity);
   /// Lists which rows of the pair list have anything to compute; after the lists were repaired.
   void mark_rows(const Spheres& spheres, const PairList& pairs);
   bool row_active(int i) const { return row_active_[i] != 0; }
 
-  /// At the end of a window puts quiet spheres to sleep; true if any fell asleep. `force` holds the total contact force of each awake sphere.
-  bool look(Spheres& spheres, PairList& pairs, const std::vector<std::uint8_t>& awake, const std::vector<Quad>& contact_force,
-            const ContactLaw& law, double time, const Vec3& gravity);
+  /// At the end of a window puts quiet spheres to sleep; true if any fell asleep. Spheres::force holds the
+  /// contact forces of the last step.
+  bool look(Spheres& spheres, PairList& pairs, const std::vector<std::uint8_t>& awake, const ContactLaw& law,
+            double time, const Vec3& gravity);
 
   /// A contact of a sleeper (with an awake sphere) has this force now. Safe from several threads.
   void feel(PairList& pairs, int p, int sleeper, const Vec3& force) {
@@ -53,7 +55,7 @@ class Sleep {
   double window_ = 0, window_end_ = 0;  // s
   std::vector<Vec3> window_start_;      // places
   std::vector<std::uint8_t> quiet_windows_;
-  std::vector<double> tolerance2_;      // N^2
+  std::vector<double> tolerance2_;  // N^2
   std::vector<std::uint8_t> disturbed_, row_active_;
   bool any_disturbed_ = false;
   std::int64_t asleep_ = 0;

@@ -49,9 +49,8 @@ std::vector<int> sort_spheres(Spheres& s, const std::vector<std::uint8_t>& fixed
   }
   std::vector<int> order(n);
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    return key[a] != key[b] ? key[a] < key[b] : s.id[a] < s.id[b];
-  });
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return key[a] != key[b] ? key[a] < key[b] : s.id[a] < s.id[b]; });
   permute(s.place, order);
   permute(s.velocity, order);
   permute(s.spin, order);

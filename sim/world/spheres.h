@@ -17,12 +17,12 @@ struct alignas(32) Quad {
 
 /// A sphere to be put into the world.
 struct NewSphere {
-  Vec3 position;                  ///< m
-  double diameter = 0;            ///< m
-  int dump = 0;                   ///< 0 for fixed balls
+  Vec3 position;        ///< m
+  double diameter = 0;  ///< m
+  int dump = 0;         ///< 0 for fixed balls
   bool fixed = false;
-  Vec3 velocity = Vec3::Zero();   ///< m/s
-  Vec3 spin = Vec3::Zero();       ///< rad/s
+  Vec3 velocity = Vec3::Zero();  ///< m/s
+  Vec3 spin = Vec3::Zero();      ///< rad/s
 };
 
 /// Movable spheres stand first (index below `movable`), fixed balls behind them.
@@ -30,7 +30,7 @@ struct Spheres {
   std::vector<Quad> place;     ///< position m; w: radius m
   std::vector<Quad> velocity;  ///< m/s; w: mass kg
   std::vector<Quad> spin;      ///< rad/s; w: moment of inertia kg m2
-  std::vector<Quad> force;     ///< N; w: number of contacts
+  std::vector<Quad> force;     ///< of all contacts in the last step, N; w: their number
   std::vector<Quad> torque;    ///< N m
   std::vector<std::int64_t> id;
   std::vector<std::int32_t> dump;
@@ -41,8 +41,8 @@ struct Spheres {
   int size() const { return static_cast<int>(place.size()); }
 };
 
-/// Orders movable spheres along a Morton curve (lost ones last), fixed balls likewise behind them. Returns `order`
-/// with new index k holding the sphere that had index order[k].
+/// Orders movable spheres along a Morton curve (lost ones last), fixed balls likewise behind them. Returns
+/// `order` with new index k holding the sphere that had index order[k].
 std::vector<int> sort_spheres(Spheres& spheres, const std::vector<std::uint8_t>& fixed);
 
 }  // namespace scree

@@ -104,7 +104,7 @@ TEST(Summary, SectionsCsvHasARowForEachSeedTableAndSection) {
   std::ifstream in(file);
   std::string line;
   std::getline(in, line);
-  EXPECT_EQ(line.substr(0, 50), "seed,sections,section,x_over_l,mass_t,grains,chi,d");
+  EXPECT_EQ(line.substr(0, 56), "seed,sections,dumps,section,x_over_l,mass_t,grains,chi,d");
   const auto columns = std::count(line.begin(), line.end(), ',');
   int rows = 0;
   while (std::getline(in, line)) {
@@ -116,6 +116,31 @@ TEST(Summary, SectionsCsvHasARowForEachSeedTableAndSection) {
     ++rows;
   }
   EXPECT_EQ(rows, 2 * (6 + 3));
+}
+
+TEST(Summary, IsReadBackForComparison) {
+  const auto file = fresh_folder("back") / "summary.json";
+  RunResult run = fake_run();
+  run.seeds[1].sections[0].sections[2].chi = std::numeric_limits<double>::quiet_NaN();
+  write_summary(run, file);
+  const StoredRun stored = read_summary(file);
+  ASSERT_EQ(stored.seeds.size(), run.seeds.size());
+  for (std::size_t k = 0; k < run.seeds.size(); ++k) {
+    ASSERT_EQ(stored.seeds[k].sections.size(), run.seeds[k].sections.size());
+    for (std::size_t t = 0; t < run.seeds[k].sections.size(); ++t)
+      for (std::size_t i = 0; i < run.seeds[k].sections[t].sections.size(); ++i) {
+        const Section &was = run.seeds[k].sections[t].sections[i],
+                      &is = stored.seeds[k].sections[t].sections[i];
+        if (std::isnan(was.chi))
+          EXPECT_TRUE(std::isnan(is.chi));
+        else
+          EXPECT_DOUBLE_EQ(is.chi, was.chi);
+        EXPECT_DOUBLE_EQ(is.d50_rel, was.d50_rel);
+        EXPECT_NEAR(is.mass, was.mass, 1e-9 * was.mass);
+      }
+  }
+  std::ofstream(file) << "{\"title\": 3}";
+  EXPECT_THROW(read_summary(file), std::runtime_error);
 }
 
 TEST(Summary, SaysWhichFileCannotBeWritten) {

@@ -119,7 +119,8 @@ TEST(Reference, MalformedLineIsNamed) {
 }
 
 TEST(Compare, TakesTheTableWithTheCasesNumberOfDumps) {
-  // cm_field_3sec: three dumps in PFC3D; the measured slope states none and is held against the finished pile.
+  // cm_field_3sec: three dumps in PFC3D; the measured slope states none and is held against the finished
+  // pile.
   std::vector<SeedResult> seeds{seed_with_sections({3, 3})};
   SectionTable &end = seeds[0].sections[0], &third = seeds[0].sections[1];
   end.dumps = 4, third.dumps = 3;

@@ -1,4 +1,5 @@
-// The program as a user meets it: exit codes, messages, files, interruption, and the same numbers with any number of threads.
+// The program as a user meets it: exit codes, messages, files, interruption, and the same numbers with any
+// number of threads.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -50,21 +51,24 @@ class Cli : public testing::Test {
   void TearDown() override { fs::remove_all(folder); }
   fs::path folder;
   // A load of a few hundred spheres over a bench of 3 m: some seconds.
-  const std::string small = std::string(SCREE_SOURCE_DIR) + "/scenarios/quick_dump.yaml --set experiment.payload_t=10" +
-                            " --set experiment.bench.height_m=3 --set experiment.bench.width_m=30" +
-                            " --set experiment.bench.top_length_m=10 --set experiment.bench.floor_length_m=15";
+  const std::string small =
+      std::string(SCREE_SOURCE_DIR) + "/scenarios/quick_dump.yaml --set experiment.payload_t=10" +
+      " --set experiment.bench.height_m=3 --set experiment.bench.width_m=30" +
+      " --set experiment.bench.top_length_m=10 --set experiment.bench.floor_length_m=15";
 };
 
 TEST_F(Cli, RunWritesWhatItPromises) {
   const fs::path out = folder / "run";
   const Called run = call("run " + small + " --seeds 2 --out " + out.string());
   ASSERT_EQ(run.code, 0) << run.text;
-  for (const char* name : {"scenario.yaml", "summary.json", "sections.csv", "report.html", "seed_10001/particles.h5",
-                           "seed_10001/particles.xdmf", "seed_10001/particles.xyz", "seed_10002/particles.h5"})
+  for (const char* name :
+       {"scenario.yaml", "summary.json", "sections.csv", "report.html", "seed_10001/particles.h5",
+        "seed_10001/particles.xdmf", "seed_10001/particles.xyz", "seed_10002/particles.h5"})
     EXPECT_GT(fs::file_size(out / name), 100u) << name;
   const auto summary = nlohmann::json::parse(slurp(out / "summary.json"));
-  for (const char* key : {"scenario", "engine", "seeds", "particles", "wall_seconds", "simulated_seconds", "particle_steps",
-                          "largest_overlap_ratio", "lost_particles", "sections", "comparison"})
+  for (const char* key :
+       {"scenario", "engine", "seeds", "particles", "wall_seconds", "simulated_seconds", "particle_steps",
+        "largest_overlap_ratio", "lost_particles", "sections", "comparison"})
     EXPECT_TRUE(summary.contains(key)) << key;
   // What was put in is in the sections, above them, or lost.
   double mass = summary["lost_mass_t"].get<double>();
@@ -75,7 +79,8 @@ TEST_F(Cli, RunWritesWhatItPromises) {
   EXPECT_TRUE(summary["at_rest"].get<bool>());
 
   // The resolved scenario is a scenario, and gives the same numbers.
-  const Called again = call("run " + (out / "scenario.yaml").string() + " --seeds 2 --out " + (folder / "again").string());
+  const Called again =
+      call("run " + (out / "scenario.yaml").string() + " --seeds 2 --out " + (folder / "again").string());
   ASSERT_EQ(again.code, 0) << again.text;
   EXPECT_EQ(slurp(out / "sections.csv"), slurp(folder / "again" / "sections.csv"));
 
@@ -92,7 +97,8 @@ TEST_F(Cli, NumbersDoNotDependOnThreads) {
   std::string first;
   for (const int threads : {1, 2, 4}) {
     const fs::path out = folder / std::to_string(threads);
-    const Called run = call("run " + small + " --threads " + std::to_string(threads) + " --out " + out.string());
+    const Called run =
+        call("run " + small + " --threads " + std::to_string(threads) + " --out " + out.string());
     ASSERT_EQ(run.code, 0) << run.text;
     // The extended XYZ holds every place of every frame.
     const std::string places = slurp(out / "seed_10001" / "particles.xyz");
@@ -122,7 +128,8 @@ TEST_F(Cli, BadInputIsOneLineAndExitCodeTwo) {
     EXPECT_NE(result.text.find(c.message), std::string::npos) << c.arguments << ": " << result.text;
     EXPECT_EQ(std::count(result.text.begin(), result.text.end(), '\n'), 1) << result.text;
   }
-  const Called set = call("run " + small + " --set material.mux=1 --set material.mu=-1 --out " + (folder / "x").string());
+  const Called set =
+      call("run " + small + " --set material.mux=1 --set material.mu=-1 --out " + (folder / "x").string());
   EXPECT_EQ(set.code, 2);
   EXPECT_NE(set.text.find("--set material.mux=1"), std::string::npos) << set.text;
   EXPECT_NE(set.text.find("--set material.mu=-1"), std::string::npos) << set.text;

@@ -1,5 +1,5 @@
-// The laboratory repose test, 75 kg of Lab0, against PFC3D (table B.2) with the bars of the product: 2 degrees at mu = mu_r = 0.2
-// (25.25) and 2.5 degrees at 0.4 (38.49), mean of three seeds.
+// The laboratory repose test, 75 kg of Lab0, against PFC3D (table B.2) with the bars of the product: 2
+// degrees at mu = mu_r = 0.2 (25.25) and 2.5 degrees at 0.4 (38.49), mean of three seeds.
 #include <gtest/gtest.h>
 
 #include <thread>
