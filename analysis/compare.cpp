@@ -115,7 +115,7 @@ std::vector<Comparison> compare_with_reference(const std::vector<SeedResult>& se
       Comparison comparison{row, simulated.mean, std::nullopt, std::nullopt};
       if (simulated.n > 1) comparison.simulated_std = simulated.std;
       const double deviation = std::hypot(row.std.value_or(0), comparison.simulated_std.value_or(0));
-      if (deviation > 0) comparison.z = (simulated.mean - row.value) / deviation;
+      if (row.std && deviation > 0) comparison.z = (simulated.mean - row.value) / deviation;
       comparisons.push_back(std::move(comparison));
     }
   }

@@ -5,7 +5,7 @@
 // axis in each direction leaves the heap at the first gap between grains. Of the readings tried (a ray; a
 // strip of one mean or one largest diameter, in which a row of touching grains counts), the ray is the
 // literal one, and it is nearest to the printed angles at both friction values of the laboratory test; a
-// strip as wide as the largest grain follows single grains out of the heap and reads 4 to 7 degrees less.
+// strip as wide as the largest grain follows single grains out of the heap and reads 3 to 7 degrees less.
 //
 // The other readings come from a height map of the heap seen from above.
 #include "analysis/repose_angle.h"

@@ -53,7 +53,7 @@ struct Comparison {
   ReferenceValue reference;
   double simulated = 0;
   std::optional<double> simulated_std;  ///< between seeds; none with one seed
-  /// (simulated - reference) / sqrt(reference_std^2 + simulated_std^2); none when both deviations are unknown
+  /// (simulated - reference) / sqrt(reference_std^2 + simulated_std^2); none when the printed value has no deviation
   std::optional<double> z;
 };
 

@@ -1,0 +1,105 @@
+// Bench, base layer and loads: what the experiments stand on.
+#include "sim/scene/ground.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "sim/scene/load.h"
+
+namespace scree {
+namespace {
+
+double volume(const TriangleMesh& mesh) {
+  double six = 0;
+  for (const auto& t : mesh.triangles)
+    six += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]]));
+  return six / 6;
+}
+
+TEST(Bench, IsAClosedSolidOfTheRightVolume) {
+  BenchSpec bench;
+  bench.height = 15, bench.slope_deg = 40;
+  const TriangleMesh mesh = make_bench(bench);
+  EXPECT_TRUE(mesh.closed);
+  const double toe = 15 / std::tan(40 * M_PI / 180);
+  EXPECT_NEAR(toe_of(bench), toe, 1e-12);
+  // Cross-section: 5 m of ground under everything, the top and half of the slope.
+  const double section = 5 * (40 + toe + 80) + 15 * 40 + 0.5 * 15 * toe;
+  EXPECT_NEAR(volume(mesh), section * bench.width, 1e-6 * section * bench.width);
+}
+
+TEST(Bench, BaseLayerLiesOnTheSurfaceWithoutHoles) {
+  BenchSpec bench;
+  bench.top_length = 6, bench.floor_length = 8, bench.width = 12;
+  const double toe = toe_of(bench);
+  const auto surface = [&](double x) { return x <= 0 ? bench.height : x >= toe ? 0.0 : bench.height - x; };
+  const auto balls = make_base_layer(bench, 1);
+  for (const NewSphere& ball : balls) {
+    EXPECT_TRUE(ball.fixed);
+    EXPECT_EQ(ball.diameter, 1.0);
+    EXPECT_NEAR(ball.position.z(), surface(ball.position.x()), 1e-9);
+  }
+  // Seen along the surface's normal, no place away from the edges is further than a triangle's circumradius
+  // from a ball.
+  for (double x = -5; x <= toe + 7; x += 0.1)
+    for (double y = -5; y <= 5; y += 0.1) {
+      double nearest = 1e300;
+      for (const NewSphere& ball : balls)
+        nearest = std::min(nearest, (ball.position - Vec3(x, y, surface(x))).norm());
+      EXPECT_LT(nearest, 1 / std::sqrt(3.0) + 0.05) << x << ' ' << y;
+    }
+}
+
+TEST(Bench, MixedLayerHasBothSizesAndDependsOnTheSeed) {
+  BenchSpec bench;
+  bench.width = 20, bench.base_layer = BaseLayer::mixed;
+  const auto count = [](const std::vector<NewSphere>& balls, double d) {
+    return std::count_if(balls.begin(), balls.end(), [d](const NewSphere& b) { return b.diameter == d; });
+  };
+  const auto first = make_base_layer(bench, 1), same = make_base_layer(bench, 1),
+             other = make_base_layer(bench, 2);
+  const auto small = count(first, 0.5), large = count(first, 1.0);
+  EXPECT_EQ(small + large, static_cast<long>(first.size()));
+  EXPECT_EQ(small % 4, 0);
+  EXPECT_NEAR(static_cast<double>(small / 4) / static_cast<double>(small / 4 + large), 0.5, 0.03);
+  ASSERT_EQ(first.size(), same.size());
+  for (std::size_t k = 0; k < first.size(); ++k) ASSERT_EQ(first[k].position, same[k].position);
+  EXPECT_TRUE(first.size() != other.size() || first[7].position != other[7].position ||
+              count(other, 0.5) != small);
+  bench.base_layer = BaseLayer::none;
+  EXPECT_TRUE(make_base_layer(bench, 1).empty());
+}
+
+TEST(Load, FillsBoxAndCylinderWithoutOverlap) {
+  std::vector<double> diameters{2.0, 1.5, 1.5, 1.0};
+  for (int k = 0; k < 400; ++k) diameters.push_back(0.6 - 0.001 * k);
+  for (const LoadRegion& region : {LoadRegion{{4, 4, 3}}, LoadRegion{{4, 0, 3}}}) {
+    const Load load = fill_region(region, diameters, 1, 1);
+    ASSERT_EQ(load.positions.size(), diameters.size());
+    for (std::size_t i = 0; i < diameters.size(); ++i) {
+      const Vec3& x = load.positions[i];
+      const double r = 0.5 * diameters[i];
+      if (region.length.y() > 0) {
+        EXPECT_TRUE(x.x() <= -r && x.x() >= -4 + r && std::abs(x.y()) <= 2 - r);
+      } else {
+        EXPECT_LE(std::hypot(x.x(), x.y()), 2 - r + 1e-12);
+      }
+      EXPECT_TRUE(x.z() >= r && x.z() <= load.height - r + 1e-12);
+      for (std::size_t j = 0; j < i; ++j)
+        ASSERT_GE((x - load.positions[j]).norm(), 0.5 * (diameters[i] + diameters[j]));
+    }
+  }
+}
+
+TEST(Load, GrowsWhenFullAndRefusesWhatCannotFit) {
+  const std::vector<double> many(300, 0.5);
+  const Load load = fill_region({{2, 2, 1}}, many, 1, 1);
+  EXPECT_GT(load.height, 1.0);  // 300 spheres of 0.065 m3 need far more than 4 m3
+  EXPECT_THROW(fill_region({{2, 2, 1}}, {2.5}, 1, 1), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace scree
