@@ -63,7 +63,12 @@ std::string angle_sentences(const RunResult& result) {
   if (!repose.empty())
     out += fmt::format("<strong>The heap stands at a repose angle of {}°.</strong> ",
                        with_std(mean_std(repose), 1));
-  if (!slope.empty()) out += fmt::format("The slope came to rest at {}°. ", with_std(mean_std(slope), 1));
+  const bool at_rest = std::all_of(result.seeds.begin(), result.seeds.end(),
+                                   [](const SeedResult& seed) { return seed.at_rest; });
+  if (!slope.empty())
+    out += fmt::format("{} {}°. ",
+                       at_rest ? "The slope came to rest at" : "The slope is not at rest yet; it stands at",
+                       with_std(mean_std(slope), 1));
   return out;
 }
 

@@ -23,8 +23,10 @@ struct SeedResult {
   double time_step_min = 0, time_step_max = 0;  ///< s
   double largest_overlap_ratio = 0;             ///< overlap over the smaller radius
   std::int64_t lost_particles = 0;
-  double lost_mass = 0;  ///< kg
-  bool at_rest = false;  ///< every dump came to rest before max_time
+  double lost_mass = 0;                  ///< kg
+  std::int64_t squeezed_into_walls = 0;  ///< mesh contacts that began inside a closed mesh
+  std::int64_t crowded_contacts = 0;     ///< mesh contacts left out because a sphere had too many
+  bool at_rest = false;                  ///< every dump came to rest before max_time
   bool interrupted = false;
   Snapshot final_state;
   std::vector<Grain> original;                 ///< every grain as generated (ids, diameters, masses)
@@ -53,7 +55,8 @@ struct Comparison {
   ReferenceValue reference;
   double simulated = 0;
   std::optional<double> simulated_std;  ///< between seeds; none with one seed
-  /// (simulated - reference) / sqrt(reference_std^2 + simulated_std^2); none when the printed value has no deviation
+  /// (simulated - reference) / sqrt(reference_std^2 + simulated_std^2); none when the printed value has no
+  /// deviation
   std::optional<double> z;
 };
 

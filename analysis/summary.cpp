@@ -71,6 +71,8 @@ Json seed_facts(const SeedResult& seed) {
           {"mass_t", number(seed.mass / 1000)},
           {"wall_seconds", number(seed.wall_seconds)},
           {"simulated_seconds", number(seed.simulated_seconds)},
+          {"squeezed_into_walls", seed.squeezed_into_walls},
+          {"crowded_contacts", seed.crowded_contacts},
           {"steps", seed.steps},
           {"particle_steps", number(seed.particle_steps)},
           {"time_step_min_s", number(seed.time_step_min)},

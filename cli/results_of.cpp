@@ -7,6 +7,7 @@
 #include "analysis/slope_profile.h"
 #include "scree_version.h"
 #include "sim/scene/ground.h"
+#include "sim/world/mesh_contact.h"
 
 namespace scree {
 namespace {
@@ -29,6 +30,8 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
   r.largest_overlap_ratio = outcome.statistics.largest_overlap_ratio;
   r.lost_particles = outcome.statistics.lost_particles;
   r.lost_mass = outcome.statistics.lost_mass;
+  r.squeezed_into_walls = outcome.statistics.squeezed_into_walls;
+  r.crowded_contacts = outcome.statistics.crowded_contacts;
   r.at_rest = outcome.at_rest && !outcome.interrupted;
   r.interrupted = outcome.interrupted;
   r.final_state = std::move(outcome.final_state);
@@ -74,15 +77,24 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
   if (const auto* dump = std::get_if<EndDump>(&scenario.experiment)) result.bench_height = dump->bench.height;
   result.comparison = compare_with_reference(result.seeds, reference, scenario.compare);
 
-  double overlap = 0, lost = 0, mass = 0;
+  double overlap = 0, lost = 0, mass = 0, left_out = 0;
+  std::int64_t squeezed = 0, crowded = 0;
   std::int64_t lost_count = 0;
   for (const SeedResult& s : result.seeds) {
     overlap = std::max(overlap, s.largest_overlap_ratio);
     lost += s.lost_mass, lost_count += s.lost_particles, mass += s.mass;
+    squeezed += s.squeezed_into_walls, crowded += s.crowded_contacts;
+    if (!s.sections.empty()) left_out += s.sections.front().mass_outside;
     if (s.interrupted)
       result.notes.push_back(fmt::format("seed {} was ended by the user: its pile is not finished", s.seed));
   }
-  if (overlap > kOverlapWarning)
+  const bool impulse = scenario.engine == EngineKind::impulse;
+  if (overlap > kOverlapWarning && impulse)
+    result.notes.push_back(fmt::format(
+        "the largest overlap was {:.0f} % of the smaller radius; lower numerics.impulse_time_step_s or raise "
+        "numerics.impulse_iterations",
+        100 * overlap));
+  if (overlap > kOverlapWarning && !impulse)
     result.notes.push_back(fmt::format(
         "the largest overlap was {:.0f} % of the smaller radius, above {:.0f} %: spheres this soft deform "
         "too much "
@@ -92,7 +104,20 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
     result.notes.push_back(
         fmt::format("{} spheres ({:.2f} t, {:.2f} % of the mass) left the model and are not in the pile",
                     lost_count, lost / 1000, 100 * lost / mass));
-  if (scenario.engine == EngineKind::impulse)
+  if (squeezed > 0)
+    result.notes.push_back(
+        fmt::format("{} times a sphere was found more than half inside a wall (squeezed through it, or a "
+                    "tool was put where it lay); "
+                    "it was not shot out, but may have passed",
+                    squeezed));
+  if (crowded > 0)
+    result.notes.push_back(fmt::format(
+        "{} contacts with meshes were left out because a sphere touched more than {} surfaces at once",
+        crowded, kMeshContactSlots));
+  if (left_out > 0)
+    result.notes.push_back(fmt::format("{:.1f} t lie above the crest's height and belong to no section",
+                                       left_out / 1000 / static_cast<double>(result.seeds.size())));
+  if (impulse)
     result.notes.push_back(
         "the impulse engine is not calibrated: its repose angles are not those of rrlinear");
   return result;

@@ -153,6 +153,17 @@ int run_run(const RunOptions& options) {
     }
     notes.insert(notes.end(), run.notes.begin(), run.notes.end());
     if (run.result) results.push_back(std::move(*run.result));
+    if (!run.result && run.failure.empty())
+      notes.push_back(fmt::format("seed {} was not run: the user ended the run", run.seed));
+  }
+  // An unfinished pile must not be averaged with finished ones.
+  const auto unfinished = [](const scree::SeedResult& r) { return r.interrupted; };
+  if (!std::all_of(results.begin(), results.end(), unfinished)) {
+    for (const scree::SeedResult& r : results)
+      if (unfinished(r))
+        notes.push_back(fmt::format(
+            "seed {} was ended by the user and is left out; its frames are in seed_{}", r.seed, r.seed));
+    std::erase_if(results, unfinished);
   }
   if (results.empty()) {
     fmt::print(stderr, "no seed came to a result; what was written is in {}\n", out.string());

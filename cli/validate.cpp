@@ -8,7 +8,7 @@ int run_validate(const std::filesystem::path& file, const std::vector<std::strin
   const scree::ScenarioResult result = scree::load_scenario(file, overrides, asset_dir());
   for (const std::string& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning);
   for (const scree::ScenarioError& error : result.errors) fmt::print(stderr, "{}\n", error.text());
-  if (!result.errors.empty()) return 2;
+  if (!result.errors.empty()) return kBadInput;
 
   const scree::Scenario& scenario = result.scenario;
   const scree::Grading grading = scree::read_grading(scenario.grading_file);

@@ -92,6 +92,9 @@ class Checks {
                  "the box of {:.3g} m3 holds at most {:.3g} m3 ({} of it); enlarge it or lower payload_t",
                  e.payload / 1000, rock, box.prod(), kDensestFill * box.prod(), kDensestFill));
     }
+    if (e.truck.release == Release::hoist && notes_.good({&e.truck.tilt_deg}) && e.truck.tilt_deg <= 0)
+      fail(&e.truck.tilt_deg,
+           "experiment.truck.tilt_deg: 0 with release hoist: the bed must tilt, more than 0");
     if (box_good) largest(box.minCoeff(), &e.truck.load_box, "experiment.truck.load_box_m");
     if (box_good && notes_.good({&e.bench.width, &e.points})) {
       const double reach = (e.bench.width - box.y()) / 2;
@@ -147,6 +150,13 @@ class Checks {
           fail(&frame.time,
                fmt::format("tools[{}].keyframes[{}].time_s: {} s is not after the keyframe before ({} s)", i,
                            k, frame.time, before.time));
+        if (notes_.good({&before.rotation_deg, &frame.rotation_deg}) &&
+            (frame.rotation_deg - before.rotation_deg).cwiseAbs().maxCoeff() >= 180)
+          fail(&frame.rotation_deg,
+               fmt::format(
+                   "tools[{}].keyframes[{}].rotation_deg: turns by 180 degrees or more from the keyframe "
+                   "before, which way is not clear; add keyframes between",
+                   i, k));
       }
     }
   }

@@ -37,7 +37,6 @@ class Stage {
   void set_dump(int dump, int dumps) { progress_.dump = dump, progress_.dumps = dumps; }
   /// The load of this number is at rest and its truck gone: keeps the pile if it was asked for.
   void dump_done(int dump, int dumps);
-  bool interrupted() const { return outcome_.interrupted; }
   RunOutcome finish();
 
  private:

@@ -52,7 +52,7 @@ class MeshBody {
   double moved_since_mark() const;
   void mark() { marked_ = state_.pose; }
 
-  /// Calls visit(facet index) for every facet whose box meets the cube of half width `range` (m) about a
+  /// Appends every facet whose box meets the cube of half width `range` (m) about a
   /// world point, by Bullet's BVH, in rising order.
   void facets_near(const Vec3& point, double range, std::vector<int>& facets) const;
 

@@ -110,16 +110,14 @@ bool hidden(const Touch& touch, const Touch& by, double radius) {
 
 }  // namespace
 
-int update_mesh_contacts(const std::vector<std::unique_ptr<MeshBody>>& bodies,
-                         std::span<const FacetRef> facets, const Vec3& centre, double radius,
-                         std::span<MeshContact> slots) {
+MeshContactChanges update_mesh_contacts(const std::vector<std::unique_ptr<MeshBody>>& bodies,
+                                        std::span<const FacetRef> facets, const Vec3& centre, double radius,
+                                        std::span<MeshContact> slots) {
   thread_local std::vector<Touch> touches, accepted;
   std::array<bool, kMeshContactSlots> goes_on{};
-  struct Fresh {
-    MeshContact contact;
-  };
-  std::array<Fresh, kMeshContactSlots> fresh;
-  int fresh_count = 0, without_slot = 0;
+  std::array<MeshContact, kMeshContactSlots> fresh;
+  MeshContactChanges changes;
+  int fresh_count = 0;
 
   for (std::size_t first = 0; first < facets.size();) {
     const int b = facets[first].body;
@@ -164,9 +162,10 @@ int update_mesh_contacts(const std::vector<std::unique_ptr<MeshBody>>& bodies,
         slots[best].overlap = touch.overlap - slots[best].excess;
       } else if (fresh_count < kMeshContactSlots) {
         const double excess = body.mesh().closed && touch.overlap > kBornDeep * radius ? touch.overlap : 0.0;
-        fresh[fresh_count++].contact = {b, normal, touch.overlap - excess, excess, {}};
+        if (excess > 0) ++changes.born_inside;
+        fresh[fresh_count++] = {b, normal, touch.overlap - excess, excess, {}};
       } else {
-        ++without_slot;
+        ++changes.without_slot;
       }
     }
     first = last;
@@ -178,11 +177,11 @@ int update_mesh_contacts(const std::vector<std::unique_ptr<MeshBody>>& bodies,
   for (int m = 0; m < fresh_count; ++m) {
     while (k < static_cast<int>(slots.size()) && slots[k].body >= 0) ++k;
     if (k == static_cast<int>(slots.size()))
-      ++without_slot;
+      ++changes.without_slot;
     else
-      slots[k] = fresh[m].contact;
+      slots[k] = fresh[m];
   }
-  return without_slot;
+  return changes;
 }
 
 }  // namespace scree

@@ -26,6 +26,13 @@ struct FacetRef {
   int facet;
 };
 
+/// What update_mesh_contacts could not do as it should.
+struct MeshContactChanges {
+  int without_slot = 0;  ///< contacts left out because the sphere has too many
+  int born_inside =
+      0;  ///< contacts that began inside a closed mesh: the sphere was squeezed through or put there
+};
+
 /// Finds the contacts of a sphere with the facets listed (sorted by body) and updates its slots: a contact
 /// that goes on keeps its memory, one that has ended is freed.
 ///
@@ -35,10 +42,9 @@ struct FacetRef {
 /// goes on if its normal turned by less than 60 degrees. Closed meshes push from the outside only; a centre
 /// that was pressed through a face from the outside is still pushed back out, one that came from the inside
 /// is left alone: a contact that begins with more than half of the radius inside counts only what it presses
-/// deeper than at its least. Sheets push on the side where the contact began. Returns the number of contacts
-/// that found no slot.
-int update_mesh_contacts(const std::vector<std::unique_ptr<MeshBody>>& bodies,
-                         std::span<const FacetRef> facets, const Vec3& centre, double radius,
-                         std::span<MeshContact> slots);
+/// deeper than at its least. Sheets push on the side where the contact began.
+MeshContactChanges update_mesh_contacts(const std::vector<std::unique_ptr<MeshBody>>& bodies,
+                                        std::span<const FacetRef> facets, const Vec3& centre, double radius,
+                                        std::span<MeshContact> slots);
 
 }  // namespace scree

@@ -48,9 +48,11 @@ struct WorldStatistics {
   double time_step_min = 0, time_step_max = 0;  ///< s
   double largest_overlap_ratio = 0;             ///< overlap over the smaller radius
   std::int64_t lost_particles = 0;
-  double lost_mass = 0;           ///< kg
-  std::int64_t list_repairs = 0;  ///< times the pair list was repaired
-  std::int64_t asleep = 0;        ///< spheres asleep now
+  double lost_mass = 0;                  ///< kg
+  std::int64_t list_repairs = 0;         ///< times the pair list was repaired
+  std::int64_t squeezed_into_walls = 0;  ///< mesh contacts that began inside a closed mesh
+  std::int64_t crowded_contacts = 0;     ///< mesh contacts left out because a sphere had too many
+  std::int64_t asleep = 0;               ///< spheres asleep now
 };
 
 /// Energies of the scene (J).

@@ -156,6 +156,8 @@ void RrlinearWorld::repair() {
   if (!listed.empty() || tools_moved) list_facets(listed, tools_moved);
   if (sleep_.on()) {
     find_watched();
+    for (int i = 0; i < spheres_.movable; ++i)
+      if (watched_[i] && spheres_.asleep[i]) sleep_.wake(i, spheres_, pairs_);
     sleep_.mark_rows(spheres_, pairs_);
   }
 }
@@ -265,7 +267,7 @@ double RrlinearWorld::pair_forces(int first, int last) {
       motion.overlap = overlap;
       motion.velocity = vj - vi - (arm1 * wi + arm2 * wj).cross(n);
       motion.spin = wj - wi;
-      motion.twist = 0.5 * (wi + wj).dot(n);
+      motion.twist = shared_twist(wi.dot(n), wj.dot(n));
       motion.reduced_mass = j < spheres_.movable ? m1 * m2 / (m1 + m2) : m1;
       motion.dt = last_dt_;
       const ContactForce f = contact_step(law_, ball_ball(law_, pi.w, pj.w), motion, pairs_.history[p]);
@@ -318,7 +320,11 @@ double RrlinearWorld::mesh_forces(int first, int last) {
     const std::span<MeshContact> slots(slots_.data() + slot_of_[i], kMeshContactSlots);
     const std::span<const FacetRef> facets(facets_.data() + facet_begin_[i],
                                            static_cast<std::size_t>(facet_begin_[i + 1] - facet_begin_[i]));
-    update_mesh_contacts(meshes_, facets, place.vec(), place.w, slots);
+    const MeshContactChanges changes = update_mesh_contacts(meshes_, facets, place.vec(), place.w, slots);
+    if (changes.born_inside > 0)
+      __atomic_fetch_add(&statistics_.squeezed_into_walls, changes.born_inside, __ATOMIC_RELAXED);
+    if (changes.without_slot > 0)
+      __atomic_fetch_add(&statistics_.crowded_contacts, changes.without_slot, __ATOMIC_RELAXED);
     const Vec3 v = spheres_.velocity[i].vec(), w = spheres_.spin[i].vec();
     for (MeshContact& c : slots) {
       if (c.body < 0) continue;
@@ -333,7 +339,7 @@ double RrlinearWorld::mesh_forces(int first, int last) {
       motion.overlap = c.overlap;
       motion.velocity = body.state().velocity_at(point) - v - arm * w.cross(normal);
       motion.spin = body.state().spin - w;
-      motion.twist = 0.5 * (w + body.state().spin).dot(normal);
+      motion.twist = shared_twist(w.dot(normal), body.state().spin.dot(normal));
       motion.reduced_mass = spheres_.velocity[i].w;
       motion.dt = last_dt_;
       const ContactForce f = contact_step(law, ball_facet(law, place.w), motion, c.history);

@@ -42,13 +42,13 @@ class Sleep {
       __atomic_store_n(&any_disturbed_, true, __ATOMIC_RELAXED);
     }
   }
-  bool any_disturbed() const { return any_disturbed_; }
   /// Wakes those that felt a disturbance.
   void wake_disturbed(Spheres& spheres, PairList& pairs);
+  /// Wakes one sphere.
+  void wake(int i, Spheres& spheres, PairList& pairs);
   std::int64_t asleep() const { return asleep_; }
 
  private:
-  void wake(int i, Spheres& spheres, PairList& pairs);
   static void forget_rest(int i, PairList& pairs);
 
   bool on_;

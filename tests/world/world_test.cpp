@@ -113,13 +113,13 @@ TEST(World, RunawayLeavesTheOthersAlone) {
   for (RrlinearWorld* world : {&quiet, &runaway}) {
     world->add_spheres(spheres);
     add_floor(*world);
-    world->advance_to(4.0);  // at rest
+    world->advance_to(8.0);  // at rest
   }
   // Beyond all others on every axis, so that it comes last in the order of the spheres.
   const auto id = static_cast<std::int64_t>(spheres.size());
   runaway.add_spheres({ball({100, 100, 100}, 0.2, {200, 0, 0})});
   quiet.add_spheres({ball({100, 100, 100}, 0.2)});
-  for (RrlinearWorld* world : {&quiet, &runaway}) world->advance_to(4.0);
+  for (RrlinearWorld* world : {&quiet, &runaway}) world->advance_to(8.0);
   // 300 steps: fewer than lie between two re-sortings, which list everybody.
   const auto before = partners(runaway, id);
   std::vector<Vec3> places, listed;
@@ -130,8 +130,8 @@ TEST(World, RunawayLeavesTheOthersAlone) {
   const std::int64_t quiet_before = quiet.statistics().list_repairs,
                      before_repairs = runaway.statistics().list_repairs;
   const auto steps = runaway.statistics().steps;
-  quiet.advance_to(4.06);
-  runaway.advance_to(4.06);
+  quiet.advance_to(8.06);
+  runaway.advance_to(8.06);
   EXPECT_EQ(partners(runaway, id), before);
   for (int i = 0; i < runaway.spheres().size(); ++i) {
     if (runaway.spheres().id[i] == id) continue;
