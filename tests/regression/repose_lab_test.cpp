@@ -2,7 +2,7 @@
 // degrees at mu = mu_r = 0.2 (25.25) and 2.5 degrees at 0.4 (38.49), mean of three seeds.
 #include <gtest/gtest.h>
 
-#include <thread>
+#include <cstdio>
 
 #include "analysis/repose_angle.h"
 #include "analysis/results.h"
@@ -33,7 +33,9 @@ double mean_angle(const char* scenario_file) {
     angles[k] = measure_repose(outcome.final_state.grains).angle;
   }
   EXPECT_EQ(angles.size(), 3u);
-  return mean_std(angles).mean;
+  const MeanStd result = mean_std(angles);
+  std::printf("%s: %.2f +- %.2f degrees\n", scenario_file, result.mean, result.std);
+  return result.mean;
 }
 
 TEST(ReposeLab, FrictionOfTwoTenths) {
