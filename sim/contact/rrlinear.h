@@ -68,7 +68,7 @@ struct ContactMotion {
   double overlap;       ///< m, positive
   Vec3 velocity;        ///< of 2 against 1 at the contact point, m/s
   Vec3 spin;            ///< of 2 against 1, rad/s
-  double twist;         ///< shared_twist() of the two, rad/s
+  double twist;         ///< mean spin of the two about the normal, rad/s
   double reduced_mass;  ///< m1 m2 / (m1 + m2), kg; used by the dashpots only
   double dt;            ///< s
 };
@@ -79,23 +79,14 @@ struct ContactForce {
   Vec3 rolling;  ///< N m
 };
 
-/// Spin about the normal that two pieces share (rad/s): the smaller one when both turn the same way, else 0.
-/// A pair that turns as one takes its memory along; a sphere that spins alone on its contact, which nothing
-/// brakes, does not wind it up. With the mean of both spins instead, such a spinner creeps through a heap at
-/// rest.
-inline double shared_twist(double spin1, double spin2) {
-  if (spin1 * spin2 <= 0) return 0.0;
-  return std::abs(spin1) < std::abs(spin2) ? spin1 : spin2;
-}
-
 /// Turns a remembered vector with the contact: into the new contact plane with its length kept, and about the
-/// normal by `angle` (small), their shared twist.
+/// normal by `angle` (small), the mean spin of the two, as in PFC3D.
 [[gnu::always_inline]] inline Vec3 turned_with_contact(const Vec3& v, const Vec3& n, double angle) {
   const Vec3 flat = v - n * v.dot(n);
   const double flat2 = flat.squaredNorm(), full2 = v.squaredNorm();
   if (!(flat2 > 1e-24 * full2) || full2 == 0.0) return Vec3::Zero();
-  // A turn by atan(angle); n x flat is as long as flat, so the length is kept exactly.
-  return (flat + angle * n.cross(flat)) * std::sqrt(full2 / (flat2 * (1.0 + angle * angle)));
+  const Vec3 in_plane = flat * std::sqrt(full2 / flat2);
+  return in_plane + angle * n.cross(in_plane);
 }
 
 /// One step of the law; updates the history.

@@ -259,6 +259,8 @@ double RrlinearWorld::pair_forces(int first, int last) {
       const double per_d = 1.0 / d;
       const Vec3 n = d > 0 ? Vec3(dx * per_d, dy * per_d, dz * per_d) : Vec3(0, 0, 1);
       const double overlap = reach - d;
+      // The contact point halves the overlap. It may lie beyond the centre of a small sphere pressed into a block: the arms
+      // always add up to the distance, so angular momentum is kept.
       const double arm1 = pi.w - 0.5 * overlap, arm2 = pj.w - 0.5 * overlap;
       const Vec3 vj = velocity[j].vec(), wj = spin[j].vec();
       const double m1 = velocity[i].w, m2 = velocity[j].w;
@@ -267,7 +269,7 @@ double RrlinearWorld::pair_forces(int first, int last) {
       motion.overlap = overlap;
       motion.velocity = vj - vi - (arm1 * wi + arm2 * wj).cross(n);
       motion.spin = wj - wi;
-      motion.twist = shared_twist(wi.dot(n), wj.dot(n));
+      motion.twist = 0.5 * (wi + wj).dot(n);
       motion.reduced_mass = j < spheres_.movable ? m1 * m2 / (m1 + m2) : m1;
       motion.dt = last_dt_;
       const ContactForce f = contact_step(law_, ball_ball(law_, pi.w, pj.w), motion, pairs_.history[p]);
@@ -339,7 +341,7 @@ double RrlinearWorld::mesh_forces(int first, int last) {
       motion.overlap = c.overlap;
       motion.velocity = body.state().velocity_at(point) - v - arm * w.cross(normal);
       motion.spin = body.state().spin - w;
-      motion.twist = shared_twist(w.dot(normal), body.state().spin.dot(normal));
+      motion.twist = 0.5 * (w + body.state().spin).dot(normal);
       motion.reduced_mass = spheres_.velocity[i].w;
       motion.dt = last_dt_;
       const ContactForce f = contact_step(law, ball_facet(law, place.w), motion, c.history);
