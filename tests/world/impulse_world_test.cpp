@@ -5,20 +5,12 @@
 #include <numbers>
 
 #include "sim/world/rock_world.h"
+#include "tests/world/ball.h"
 
 namespace scree {
 namespace {
 
 constexpr double kGravity = 9.81, kRadius = 0.5;
-
-NewSphere ball(const Vec3& position, double radius, const Vec3& velocity = Vec3::Zero()) {
-  NewSphere s;
-  s.position = position;
-  s.diameter = 2 * radius;
-  s.dump = 1;
-  s.velocity = velocity;
-  return s;
-}
 
 void add_floor(RockWorld& world, const Surface& surface) {
   world.add_mesh(make_box({-20, -20, -2}, {20, 20, 0}), surface, Motion::fixed(Pose{}));

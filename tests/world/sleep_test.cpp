@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/world/rrlinear_world.h"
+#include "tests/world/ball.h"
 
 namespace scree {
 namespace {
@@ -12,12 +13,7 @@ namespace {
 constexpr double kRadius = 0.3;
 
 NewSphere ball(const Vec3& position, const Vec3& velocity = Vec3::Zero(), double radius = kRadius) {
-  NewSphere s;
-  s.position = position;
-  s.diameter = 2 * radius;
-  s.dump = 1;
-  s.velocity = velocity;
-  return s;
+  return scree::ball(position, radius, velocity);
 }
 
 struct Bench {

@@ -8,18 +8,10 @@
 
 #include "sim/material/random.h"
 #include "sim/world/rrlinear_world.h"
+#include "tests/world/ball.h"
 
 namespace scree {
 namespace {
-
-NewSphere ball(const Vec3& position, double radius, const Vec3& velocity = Vec3::Zero()) {
-  NewSphere s;
-  s.position = position;
-  s.diameter = 2 * radius;
-  s.dump = 1;
-  s.velocity = velocity;
-  return s;
-}
 
 void add_floor(RockWorld& world) {
   world.add_mesh(make_box({-20, -20, -2}, {20, 20, 0}), {0.4, 0.4}, Motion::fixed(Pose{}));
