@@ -84,9 +84,9 @@ void Sleep::forget_rest(int i, PairList& pairs) {
     pairs.rest_known[pairs.incoming_pair[k]] = 0;
 }
 
-bool Sleep::look(Spheres& s, PairList& pairs, const std::vector<std::uint8_t>& awake, const ContactLaw& law,
+void Sleep::look(Spheres& s, PairList& pairs, const std::vector<std::uint8_t>& awake, const ContactLaw& law,
                  double time, const Vec3& gravity) {
-  if (!on_ || time < window_end_) return false;
+  if (!on_ || time < window_end_) return;
   window_end_ = time + window_;
   const double g = gravity.norm();
   bool any = false;
@@ -112,7 +112,6 @@ bool Sleep::look(Spheres& s, PairList& pairs, const std::vector<std::uint8_t>& a
     any = true;
   }
   if (any) mark_rows(s, pairs);
-  return any;
 }
 
 void Sleep::wake(int i, Spheres& s, PairList& pairs) {

@@ -27,9 +27,9 @@ class Sleep {
   void mark_rows(const Spheres& spheres, const PairList& pairs);
   bool row_active(int i) const { return row_active_[i] != 0; }
 
-  /// At the end of a window puts quiet spheres to sleep; true if any fell asleep. Spheres::force holds the
+  /// At the end of a window puts quiet spheres to sleep. Spheres::force holds the
   /// contact forces of the last step.
-  bool look(Spheres& spheres, PairList& pairs, const std::vector<std::uint8_t>& awake, const ContactLaw& law,
+  void look(Spheres& spheres, PairList& pairs, const std::vector<std::uint8_t>& awake, const ContactLaw& law,
             double time, const Vec3& gravity);
 
   /// A contact of a sleeper (with an awake sphere) has this force now. Safe from several threads.
