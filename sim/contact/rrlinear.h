@@ -12,10 +12,11 @@
 //   ball-facet: r = R1,          L = R1,      Rbar = R1
 // Source: PFC3D 5.0 documentation, linear and rolling resistance linear models; Wensrich & Katterfeld, Powder
 // Technology 217 (2012).
-#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
+#include "sim/contact/lanes.h"
 #include "sim/material/material.h"
 #include "sim/material/vector.h"
 
@@ -37,17 +38,20 @@ struct ContactLaw {
         beta_s(m.shear_damping_ratio) {}
 };
 
-/// Stiffnesses of one contact.
-struct ContactStiffness {
-  double kn;    ///< N/m
-  double ks;    ///< N/m
-  double kr;    ///< N m/rad
-  double rbar;  ///< effective radius, m
+/// Stiffnesses of one contact, or of four side by side.
+template <class Real>
+struct BasicContactStiffness {
+  Real kn;    ///< N/m
+  Real ks;    ///< N/m
+  Real kr;    ///< N m/rad
+  Real rbar;  ///< effective radius, m
 };
+using ContactStiffness = BasicContactStiffness<double>;
 
-inline ContactStiffness ball_ball(const ContactLaw& law, double r1, double r2) {
-  const double r = std::min(r1, r2), per_length = 1.0 / (r1 + r2), rbar = r1 * r2 * per_length;
-  const double kn = law.modulus_pi * r * r * per_length, ks = kn * law.inverse_stiffness_ratio;
+template <class Real>
+SCREE_INLINE BasicContactStiffness<Real> ball_ball(const ContactLaw& law, Real r1, Real r2) {
+  const Real r = smaller(r1, r2), per_length = 1.0 / (r1 + r2), rbar = r1 * r2 * per_length;
+  const Real kn = law.modulus_pi * r * r * per_length, ks = kn * law.inverse_stiffness_ratio;
   return {kn, ks, ks * rbar * rbar, rbar};
 }
 
@@ -57,72 +61,86 @@ inline ContactStiffness ball_facet(const ContactLaw& law, double r1) {
 }
 
 /// What a contact remembers from step to step, as acting on piece 1.
-struct ContactHistory {
-  Vec3 shear = Vec3::Zero();    ///< N
-  Vec3 rolling = Vec3::Zero();  ///< N m
+template <class Real>
+struct BasicContactHistory {
+  using Vector = typename VectorOf<Real>::type;
+  Vector shear;    ///< N
+  Vector rolling;  ///< N m
+};
+struct ContactHistory : BasicContactHistory<double> {
+  ContactHistory() : BasicContactHistory<double>{Vec3::Zero(), Vec3::Zero()} {}
 };
 
 /// How the two pieces move against each other over one step.
-struct ContactMotion {
-  Vec3 normal;          ///< from 1 to 2, unit
-  double overlap;       ///< m, positive
-  Vec3 velocity;        ///< of 2 against 1 at the contact point, m/s
-  Vec3 spin;            ///< of 2 against 1, rad/s
-  double twist;         ///< mean spin of the two about the normal, rad/s
-  double reduced_mass;  ///< m1 m2 / (m1 + m2), kg; used by the dashpots only
-  double dt;            ///< s
+template <class Real>
+struct BasicContactMotion {
+  using Vector = typename VectorOf<Real>::type;
+  Vector normal;      ///< from 1 to 2, unit
+  Real overlap;       ///< m, positive
+  Vector velocity;    ///< of 2 against 1 at the contact point, m/s
+  Vector spin;        ///< of 2 against 1, rad/s
+  Real twist;         ///< mean spin of the two about the normal, rad/s
+  Real reduced_mass;  ///< m1 m2 / (m1 + m2), kg; used by the dashpots only
+  double dt;          ///< s
 };
+using ContactMotion = BasicContactMotion<double>;
 
 /// Force and rolling moment on piece 1; piece 2 gets the opposite.
-struct ContactForce {
-  Vec3 force;    ///< N, normal and shear
-  Vec3 rolling;  ///< N m
+template <class Real>
+struct BasicContactForce {
+  using Vector = typename VectorOf<Real>::type;
+  Vector force;    ///< N, normal and shear
+  Vector rolling;  ///< N m
 };
+using ContactForce = BasicContactForce<double>;
 
 /// Turns a remembered vector with the contact: into the new contact plane with its length kept, and about the
 /// normal by `angle` (small), the mean spin of the two, as in PFC3D.
-[[gnu::always_inline]] inline Vec3 turned_with_contact(const Vec3& v, const Vec3& n, double angle) {
-  const Vec3 flat = v - n * v.dot(n);
-  const double flat2 = flat.squaredNorm(), full2 = v.squaredNorm();
-  if (!(flat2 > 1e-24 * full2) || full2 == 0.0) return Vec3::Zero();
-  const Vec3 in_plane = flat * std::sqrt(full2 / flat2);
-  return in_plane + angle * n.cross(in_plane);
+template <class Vector, class Real = typename RealOf<Vector>::type>
+SCREE_INLINE Vector turned_with_contact(const Vector& v, const Vector& n, std::type_identity_t<Real> angle) {
+  const Vector flat = v - n * v.dot(n);
+  const Real flat2 = flat.squaredNorm(), full2 = v.squaredNorm();
+  // A memory that stands on the new plane, or none at all, leaves nothing.
+  const auto lies = flat2 > 1e-24 * full2;
+  const Vector in_plane = flat * pick(lies, root(full2 / flat2), Real{});
+  return in_plane + n.cross(in_plane) * angle;
 }
 
 /// One step of the law; updates the history.
-[[gnu::always_inline]] inline ContactForce contact_step(const ContactLaw& law, const ContactStiffness& k,
-                                                        const ContactMotion& c, ContactHistory& history) {
-  const Vec3& n = c.normal;
-  double fn = k.kn * c.overlap;
-  const double vn = c.velocity.dot(n);
-  const Vec3 slip = c.velocity - n * vn;
-  if (law.beta_n > 0.0) {
-    fn -= 2.0 * law.beta_n * std::sqrt(c.reduced_mass * k.kn) * vn;
-    fn = std::max(fn, 0.0);
-  }
-  const double twist_angle = c.twist * c.dt;
+template <class Real>
+SCREE_INLINE BasicContactForce<Real> contact_step(const ContactLaw& law, const BasicContactStiffness<Real>& k,
+                                                  const BasicContactMotion<Real>& c,
+                                                  BasicContactHistory<Real>& history) {
+  using Vector = typename VectorOf<Real>::type;
+  const Real one = all_lanes<Real>(1.0);
+  const Vector& n = c.normal;
+  Real fn = k.kn * c.overlap;
+  const Real vn = c.velocity.dot(n);
+  const Vector slip = c.velocity - n * vn;
+  if (law.beta_n > 0.0) fn = larger(fn - 2.0 * law.beta_n * root(c.reduced_mass * k.kn) * vn, Real{});
+  const Real twist_angle = c.twist * c.dt;
 
-  Vec3 shear = turned_with_contact(history.shear, n, twist_angle) + (k.ks * c.dt) * slip;
-  const double shear_limit = law.mu * fn, shear2 = shear.squaredNorm();
-  bool slides = false;
-  if (shear2 > shear_limit * shear_limit) {
-    shear *= shear_limit / std::sqrt(shear2);
-    slides = true;
-  }
+  Vector shear = turned_with_contact(history.shear, n, twist_angle) + slip * Real(k.ks * c.dt);
+  const Real shear_limit = law.mu * fn, shear2 = shear.squaredNorm();
+  const auto slides = shear2 > shear_limit * shear_limit;
+  shear = shear * pick(slides, shear_limit / root(shear2), one);
   history.shear = shear;
-  if (law.beta_s > 0.0 && !slides) shear += (2.0 * law.beta_s * std::sqrt(c.reduced_mass * k.ks)) * slip;
+  if (law.beta_s > 0.0)
+    shear = shear + slip * pick(slides, Real{}, 2.0 * law.beta_s * root(c.reduced_mass * k.ks));
 
-  const Vec3 bend = c.spin - n * c.spin.dot(n);
-  Vec3 rolling = turned_with_contact(history.rolling, n, twist_angle) + (k.kr * c.dt) * bend;
-  const double rolling_limit = law.mu_r * k.rbar * fn, rolling2 = rolling.squaredNorm();
-  if (rolling2 > rolling_limit * rolling_limit) rolling *= rolling_limit / std::sqrt(rolling2);
+  const Vector bend = c.spin - n * c.spin.dot(n);
+  Vector rolling = turned_with_contact(history.rolling, n, twist_angle) + bend * Real(k.kr * c.dt);
+  const Real rolling_limit = law.mu_r * k.rbar * fn, rolling2 = rolling.squaredNorm();
+  const auto rolls = rolling2 > rolling_limit * rolling_limit;
+  rolling = rolling * pick(rolls, rolling_limit / root(rolling2), one);
   history.rolling = rolling;
 
   return {shear - n * fn, rolling};
 }
 
 /// Elastic energy held by a contact (J).
-inline double elastic_energy(const ContactStiffness& k, double overlap, const ContactHistory& h) {
+inline double elastic_energy(const ContactStiffness& k, double overlap,
+                             const BasicContactHistory<double>& h) {
   return 0.5 * k.kn * overlap * overlap + 0.5 * h.shear.squaredNorm() / k.ks +
          0.5 * h.rolling.squaredNorm() / k.kr;
 }

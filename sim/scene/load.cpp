@@ -54,8 +54,8 @@ Load fill_region(const LoadRegion& region, const std::vector<double>& diameters,
       grid.place(i, x, r);
       bool free = true;
       grid.query(i, [&](int j) {
-        const double reach = r + grid.reach(j);
-        if ((x - grid.position(j)).squaredNorm() < reach * reach) free = false;
+        const double reach = r + grid.site(j).w;
+        if ((x - grid.site(j).vec()).squaredNorm() < reach * reach) free = false;
       });
       if (free) {
         load.positions.push_back(x);

@@ -1,11 +1,34 @@
 #include "sim/world/grid.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
 
 namespace scree {
+namespace {
+constexpr int kFirstBits = 2;  // a table begins with 4 x 4 x 4 buckets
+}
+
+void NeighbourGrid::Table::clear() {
+  bits = kFirstBits;
+  heads.assign(std::size_t{1} << (3 * bits), -1);
+  blocks.clear();
+  free = -1;
+  used = 0;
+}
+
+// Eight times the buckets.
+void NeighbourGrid::Table::grow() {
+  ++bits;
+  heads.assign(std::size_t{1} << (3 * bits), -1);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    Block& block = blocks[b];
+    if (block.count == 0) continue;
+    std::int32_t& head = heads[bucket(block.key)];
+    block.next = head;
+    head = static_cast<std::int32_t>(b);
+  }
+}
 
 void NeighbourGrid::reset(int count, double min_reach, double max_reach) {
   assert(min_reach > 0 && max_reach >= min_reach);
@@ -14,37 +37,66 @@ void NeighbourGrid::reset(int count, double min_reach, double max_reach) {
   levels_ = static_cast<int>(cell_.size());
   inverse_cell_.clear();
   for (const double c : cell_) inverse_cell_.push_back(1.0 / c);
-  const int bits = std::max(6, static_cast<int>(std::bit_width(static_cast<unsigned>(count))) + 1);
-  shift_ = 64 - bits;
-  own_.assign(levels_, {});
-  finer_.assign(levels_, {});
+  own_.resize(levels_);
+  finer_.resize(levels_);
   for (auto* tables : {&own_, &finer_})
-    for (Table& t : *tables) t.heads.assign(std::size_t{1} << bits, -1);
-  entries_.assign(static_cast<std::size_t>(count) * levels_, {});
+    for (Table& t : *tables) t.clear();
+  slot_.assign(static_cast<std::size_t>(count) * levels_, -1);
   level_.assign(count, -1);
-  position_.assign(count, Vec3::Zero());
-  reach_.assign(count, 0.0);
+  site_.assign(count, {});
 }
 
-void NeighbourGrid::link(Table& table, std::int32_t entry, std::uint64_t k) {
-  const std::uint32_t b = bucket(k);
-  Entry& e = entries_[entry];
-  e.key = k;
-  e.next = table.heads[b];
-  e.prev = -1 - static_cast<std::int32_t>(b);
-  if (e.next >= 0) entries_[e.next].prev = entry;
-  table.heads[b] = entry;
-  ++table.count;
+void NeighbourGrid::write(Table& table, std::int32_t slot, int i) {
+  Block& block = table.blocks[slot / kInBlock];
+  const int q = slot % kInBlock;
+  block.x[q] = static_cast<float>(site_[i].x);
+  block.y[q] = static_cast<float>(site_[i].y);
+  block.z[q] = static_cast<float>(site_[i].z);
+  block.reach[q] = static_cast<float>(site_[i].w);
+  block.sphere[q] = i;
 }
 
-void NeighbourGrid::unlink(Table& table, std::int32_t entry) {
-  const Entry& e = entries_[entry];
-  if (e.prev < 0)
-    table.heads[-1 - e.prev] = e.next;
-  else
-    entries_[e.prev].next = e.next;
-  if (e.next >= 0) entries_[e.next].prev = e.prev;
-  --table.count;
+void NeighbourGrid::put(Table& table, int i, int level, std::uint64_t k) {
+  std::int32_t b = table.heads[table.bucket(k)];
+  while (b >= 0 && (table.blocks[b].key != k || table.blocks[b].count == kInBlock)) b = table.blocks[b].next;
+  if (b < 0) {
+    if (static_cast<std::size_t>(table.used) > table.heads.size()) table.grow();
+    if (table.free < 0) {
+      b = static_cast<std::int32_t>(table.blocks.size());
+      table.blocks.emplace_back();
+    } else {
+      b = table.free;
+      table.free = table.blocks[b].next;
+    }
+    std::int32_t& head = table.heads[table.bucket(k)];
+    table.blocks[b] = Block{};
+    table.blocks[b].key = k;
+    table.blocks[b].next = head;
+    head = b;
+    ++table.used;
+  }
+  const std::int32_t slot = b * kInBlock + table.blocks[b].count++;
+  slot_[static_cast<std::size_t>(i) * levels_ + level] = slot;
+  write(table, slot, i);
+}
+
+void NeighbourGrid::take(Table& table, int i, int level) {
+  const std::int32_t slot = slot_[static_cast<std::size_t>(i) * levels_ + level], b = slot / kInBlock;
+  Block& block = table.blocks[b];
+  const int q = slot % kInBlock, last = --block.count;
+  if (q != last) {
+    block.x[q] = block.x[last], block.y[q] = block.y[last], block.z[q] = block.z[last];
+    block.reach[q] = block.reach[last];
+    block.sphere[q] = block.sphere[last];
+    slot_[static_cast<std::size_t>(block.sphere[q]) * levels_ + level] = slot;
+  }
+  if (last > 0) return;
+  std::int32_t* link = &table.heads[table.bucket(block.key)];
+  while (*link != b) link = &table.blocks[*link].next;
+  *link = block.next;
+  block.next = table.free;
+  table.free = b;
+  --table.used;
 }
 
 void NeighbourGrid::place(int i, const Vec3& position, double reach) {
@@ -52,27 +104,35 @@ void NeighbourGrid::place(int i, const Vec3& position, double reach) {
   int level = 0;
   while (level + 1 < levels_ && cell_[level] < kCellReaches * reach) ++level;
   const int before = level_[i];
-  for (int l = 0; l < levels_; ++l) {
-    const std::int32_t entry = i * levels_ + l;
-    const bool was_own = before == l, was_finer = before >= 0 && before < l;
-    const bool is_own = level == l, is_finer = level < l;
-    if (!was_own && !was_finer && !is_own && !is_finer) continue;
-    const std::uint64_t k = key(cell(position.x(), l), cell(position.y(), l), cell(position.z(), l));
-    if (was_own == is_own && was_finer == is_finer && entries_[entry].key == k) continue;
-    if (was_own) unlink(own_[l], entry);
-    if (was_finer) unlink(finer_[l], entry);
-    if (is_own) link(own_[l], entry, k);
-    if (is_finer) link(finer_[l], entry, k);
-  }
   level_[i] = static_cast<std::int8_t>(level);
-  position_[i] = position;
-  reach_[i] = reach;
+  site_[i] = {position.x(), position.y(), position.z(), reach};
+  for (int l = before < 0 ? level : std::min(before, level); l < levels_; ++l) {
+    Table* const was = before < 0 || l < before ? nullptr : l == before ? &own_[l] : &finer_[l];
+    Table* const is = l < level ? nullptr : l == level ? &own_[l] : &finer_[l];
+    const std::uint64_t k = key(cell(position.x(), l), cell(position.y(), l), cell(position.z(), l));
+    const std::int32_t slot = slot_[static_cast<std::size_t>(i) * levels_ + l];
+    if (was == is && is != nullptr && is->blocks[slot / kInBlock].key == k) {
+      write(*is, slot, i);
+      continue;
+    }
+    if (was != nullptr) take(*was, i, l);
+    if (is != nullptr) put(*is, i, l, k);
+  }
 }
 
 void NeighbourGrid::remove(int i) {
   if (level_[i] < 0) return;
-  for (int l = level_[i]; l < levels_; ++l) unlink(l == level_[i] ? own_[l] : finer_[l], i * levels_ + l);
+  for (int l = level_[i]; l < levels_; ++l) take(l == level_[i] ? own_[l] : finer_[l], i, l);
   level_[i] = -1;
+}
+
+std::size_t NeighbourGrid::bytes() const {
+  std::size_t bytes =
+      slot_.capacity() * sizeof(std::int32_t) + level_.capacity() + site_.capacity() * sizeof(Quad);
+  for (const auto* tables : {&own_, &finer_})
+    for (const Table& t : *tables)
+      bytes += t.heads.capacity() * sizeof(std::int32_t) + t.blocks.capacity() * sizeof(Block);
+  return bytes;
 }
 
 }  // namespace scree

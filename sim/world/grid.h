@@ -7,11 +7,15 @@
 // finer of level a, and into own of every coarser level: with cells of the larger partner's size this is some
 // ten cells a level, whatever the ratio of the sizes. Insertion, removal and query touch only the sphere's
 // own cells, so that one fast sphere costs nobody else anything.
+//
+// A cell holds copies of what a query needs of its spheres, four to a block, in single precision: they are
+// sieved four at a time, with a margin for the rounding, and what passes is left to the caller to look at.
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
-#include "sim/material/vector.h"
+#include "sim/contact/quad.h"
 
 namespace scree {
 
@@ -28,73 +32,126 @@ class NeighbourGrid {
   /// Puts sphere i at a place, moving it if it is there already. reach <= max_reach().
   void place(int i, const Vec3& position, double reach);
   void remove(int i);
-  /// Calls visit(j) for every other sphere whose reach may overlap that of i; each once.
+  /// Calls visit(j) for every other sphere whose reach overlaps that of i, and perhaps some whose reach
+  /// ends within a millionth of its distance from the origin; each once.
   template <class Visit>
   void query(int i, Visit&& visit) const;
 
-  const Vec3& position(int i) const { return position_[i]; }  ///< as last placed
-  double reach(int i) const { return reach_[i]; }
+  /// Where a sphere was last placed (m), and its reach.
+  const Quad& site(int i) const { return site_[i]; }
+  /// Bytes held.
+  std::size_t bytes() const;
 
  private:
-  struct Entry {
+  typedef float Floats __attribute__((vector_size(16)));
+  static constexpr int kInBlock = 4;
+  struct Block {
+    Floats x, y, z, reach;
+    std::int32_t sphere[kInBlock];
     std::uint64_t key;
-    std::int32_t next, prev;  // prev < 0: head of bucket -1 - prev
+    std::int32_t next;   // block of the same bucket, or free block
+    std::int32_t count;  // 0: free
   };
   struct Table {
     std::vector<std::int32_t> heads;
-    std::int64_t count = 0;
+    std::vector<Block> blocks;
+    std::int32_t free = -1, used = 0;  // blocks
+    int bits = 0;                      // of a bucket's number, for each axis
+    bool empty() const { return used == 0; }
+    // The grid wrapped around: cells side by side have buckets side by side.
+    std::uint32_t bucket(std::uint64_t k) const {
+      const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
+      return static_cast<std::uint32_t>((k & mask) | (k >> 21 & mask) << bits |
+                                        (k >> 42 & mask) << (2 * bits));
+    }
+    void clear();
+    void grow();
   };
+  // Bit k: the sign of lane k.
+  static unsigned signs_of(Floats v) {
+#if defined(__SSE__)
+    return static_cast<unsigned>(__builtin_ia32_movmskps(v));
+#else
+    unsigned bits = 0;
+    for (int k = 0; k < kInBlock; ++k) bits |= (v[k] < 0 ? 1u : 0u) << k;
+    return bits;
+#endif
+  }
   static std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) {
     return (static_cast<std::uint64_t>(x) & 0x1fffff) | (static_cast<std::uint64_t>(y) & 0x1fffff) << 21 |
            (static_cast<std::uint64_t>(z) & 0x1fffff) << 42;
   }
-  std::uint32_t bucket(std::uint64_t k) const {
-    return static_cast<std::uint32_t>((k * 0x9e3779b97f4a7c15ull) >> shift_);
-  }
   std::int64_t cell(double x, int level) const {
     return static_cast<std::int64_t>(std::floor(x * inverse_cell_[level]));
   }
-  void link(Table& table, std::int32_t entry, std::uint64_t k);
-  void unlink(Table& table, std::int32_t entry);
+  void put(Table& table, int i, int level, std::uint64_t k);
+  void take(Table& table, int i, int level);
+  void write(Table& table, std::int32_t slot, int i);
   template <class Visit>
-  void visit_cells(const Table& table, int level, const Vec3& x, double range, int self, Visit& visit) const;
+  void visit_cells(const Table& table, int level, const Quad& at, double range, int self, Visit& visit) const;
 
   int levels_ = 0;
-  int shift_ = 64;
   std::vector<double> cell_, inverse_cell_;
   std::vector<Table> own_, finer_;
-  std::vector<Entry> entries_;  // sphere * levels + level
+  std::vector<std::int32_t> slot_;  // sphere * levels + level: place in its table, block * kInBlock + k
   std::vector<std::int8_t> level_;
-  std::vector<Vec3> position_;
-  std::vector<double> reach_;
+  std::vector<Quad> site_;
 };
 
 template <class Visit>
-void NeighbourGrid::visit_cells(const Table& table, int level, const Vec3& x, double range, int self,
+void NeighbourGrid::visit_cells(const Table& table, int level, const Quad& at, double range, int self,
                                 Visit& visit) const {
-  if (table.count == 0) return;
-  const std::int64_t x0 = cell(x.x() - range, level), x1 = cell(x.x() + range, level);
-  const std::int64_t y0 = cell(x.y() - range, level), y1 = cell(x.y() + range, level);
-  const std::int64_t z0 = cell(x.z() - range, level), z1 = cell(x.z() + range, level);
-  for (std::int64_t cx = x0; cx <= x1; ++cx)
-    for (std::int64_t cy = y0; cy <= y1; ++cy)
-      for (std::int64_t cz = z0; cz <= z1; ++cz) {
-        const std::uint64_t k = key(cx, cy, cz);
-        for (std::int32_t e = table.heads[bucket(k)]; e >= 0; e = entries_[e].next) {
-          if (entries_[e].key != k) continue;
-          const int j = e / levels_;
+  if (table.empty()) return;
+  const std::int64_t x0 = cell(at.x - range, level), x1 = cell(at.x + range, level);
+  const std::int64_t y0 = cell(at.y - range, level), y1 = cell(at.y + range, level);
+  const std::int64_t z0 = cell(at.z - range, level), z1 = cell(at.z + range, level);
+  const Floats zero{}, x = zero + static_cast<float>(at.x), y = zero + static_cast<float>(at.y),
+                       z = zero + static_cast<float>(at.z);
+  const double margin = 1e-6 * (std::abs(at.x) + std::abs(at.y) + std::abs(at.z) + range);
+  const Floats reach = zero + static_cast<float>(at.w + margin);
+  // All first blocks on their way from memory before any is looked at.
+  struct Cell {
+    std::uint64_t key;
+    std::int32_t block;
+  };
+  constexpr int kAtOnce = 64;
+  Cell cells[kAtOnce];
+  int count = 0;
+  const auto look = [&] {
+    for (int c = 0; c < count; ++c)
+      for (std::int32_t b = cells[c].block; b >= 0;) {
+        const Block& block = table.blocks[b];
+        b = block.next;
+        if (block.key != cells[c].key) continue;
+        const Floats dx = block.x - x, dy = block.y - y, dz = block.z - z, both = block.reach + reach;
+        unsigned near = signs_of(dx * dx + dy * dy + dz * dz - both * both) & ((1u << block.count) - 1u);
+        for (; near != 0; near &= near - 1) {
+          const int j = block.sphere[std::countr_zero(near)];
           if (j != self) visit(j);
         }
       }
+    count = 0;
+  };
+  for (std::int64_t cz = z0; cz <= z1; ++cz)
+    for (std::int64_t cy = y0; cy <= y1; ++cy)
+      for (std::int64_t cx = x0; cx <= x1; ++cx) {
+        const std::uint64_t k = key(cx, cy, cz);
+        const std::int32_t head = table.heads[table.bucket(k)];
+        if (head < 0) continue;
+        __builtin_prefetch(&table.blocks[head]);
+        __builtin_prefetch(&table.blocks[head].sphere[0]);
+        cells[count++] = {k, head};
+        if (count == kAtOnce) look();
+      }
+  look();
 }
 
 template <class Visit>
 void NeighbourGrid::query(int i, Visit&& visit) const {
-  const Vec3& x = position_[i];
-  const double r = reach_[i];
+  const Quad at = site_[i];
   const int a = level_[i];
-  visit_cells(finer_[a], a, x, r + 0.5 / kCellReaches * cell_[a], i, visit);
-  for (int b = a; b < levels_; ++b) visit_cells(own_[b], b, x, r + cell_[b] / kCellReaches, i, visit);
+  visit_cells(finer_[a], a, at, at.w + 0.5 / kCellReaches * cell_[a], i, visit);
+  for (int b = a; b < levels_; ++b) visit_cells(own_[b], b, at, at.w + cell_[b] / kCellReaches, i, visit);
 }
 
 }  // namespace scree

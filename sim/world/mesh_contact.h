@@ -10,10 +10,10 @@ namespace scree {
 
 /// A contact of a sphere with a mesh body, with its memory. World axes.
 struct MeshContact {
-  int body = -1;       ///< index of the mesh body; -1: slot is free
-  Vec3 normal;         ///< from the surface to the sphere, unit
-  double overlap = 0;  ///< m; above the radius when the centre has been pressed through the surface
-  double excess = 0;   ///< m; overlap that is not counted: a sphere that comes out of a solid is not shot off
+  int body = -1;               ///< index of the mesh body; -1: slot is free
+  Vec3 normal = Vec3::Zero();  ///< from the surface to the sphere, unit
+  double overlap = 0;          ///< m; above the radius when the centre has been pressed through the surface
+  double excess = 0;  ///< m; overlap that is not counted: a sphere that comes out of a solid is not shot off
   ContactHistory history;
 };
 

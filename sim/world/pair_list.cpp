@@ -3,13 +3,23 @@
 #include <algorithm>
 #include <cassert>
 #include <limits>
+#include <numeric>
 
 namespace scree {
 namespace {
 // Skin of a sphere at rest, as a share of its radius: small enough to list few pairs that do not touch, large
 // enough that a settling pile seldom repairs.
 constexpr double kSkinAtRest = 0.12;
+// Share of its skin (squared) that a sphere must have used up to be listed anew when somebody else has to.
+constexpr double kUsedUp2 = 0.5;
 constexpr int kPart = 64;  // spheres that one task looks up
+
+int place_in(std::span<const Neighbour> row, int sphere) {
+  int k = 0;
+  while (k < static_cast<int>(row.size()) && row[k].sphere < sphere) ++k;
+  return k;
+}
+
 }  // namespace
 
 void PairList::list_anew(int i, const Spheres& s, double horizon) {
@@ -19,36 +29,14 @@ void PairList::list_anew(int i, const Spheres& s, double horizon) {
     skin = kSkinAtRest * radius + s.velocity[i].vec().norm() * horizon;
     skin = std::min(skin, grid_.max_reach() - radius);
   }
-  skin2_[i] = skin * skin;
-  radius_[i] = radius;
   grid_.place(i, s.place[i].vec(), radius + skin);
 }
 
 void PairList::rebuild(const Spheres& s, const std::vector<int>& order, double horizon) {
   const int n = s.size();
-  // Pairs of before, under their new numbers.
-  std::vector<int> new_index(n, -1);
-  for (int k = 0; k < n; ++k)
-    if (order[k] >= 0) new_index[order[k]] = k;
-  struct Kept {
-    std::uint64_t key;
-    int pair;
-    bool swapped;
-  };
-  std::vector<Kept> kept;
-  for (int i = 0; i < rows(); ++i)
-    for (int p = begin_[i]; p < begin_[i + 1]; ++p) {
-      if (!touching[p]) continue;
-      const int a = new_index[i], b = new_index[partner_[p]];
-      if (a < 0 || b < 0) continue;
-      kept.push_back(
-          {static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint64_t>(std::max(a, b)), p,
-           a > b});
-    }
-  std::sort(kept.begin(), kept.end(), [](const Kept& a, const Kept& b) { return a.key < b.key; });
-  const std::vector<ContactHistory> old_history = history;
-  const std::vector<Vec3> old_rest_force = rest_force;
-  const std::vector<std::uint8_t> old_rest_known = rest_known;
+  const Rows<Neighbour> old_rows = std::move(rows_);
+  const std::vector<std::int32_t> old_below = std::move(below_);
+  const std::vector<ContactMemory> old_memory = std::move(memory_);
 
   double min_radius = std::numeric_limits<double>::max(), max_radius = 0;
   for (int i = 0; i < n; ++i) {
@@ -56,160 +44,181 @@ void PairList::rebuild(const Spheres& s, const std::vector<int>& order, double h
     min_radius = std::min(min_radius, s.place[i].w);
     max_radius = std::max(max_radius, s.place[i].w);
   }
-  begin_.assign(n + 1, 0);
-  partner_.clear();
-  history.clear();
-  touching.clear();
-  rest_force.clear();
-  rest_known.clear();
-  dirty_.assign(n, 0);
-  radius_.assign(n, 0.0);
-  skin2_.assign(n, 0.0);
+  rows_ = {};
+  rows_.reset(s.movable);
+  below_.assign(s.movable, 0);
+  memory_ = {};
+  memory_.reserve(old_memory.size());
+  free_memory_.clear();
   dropped_.clear();
   listed_.clear();
-  if (max_radius > 0) {
-    grid_.reset(n, min_radius * (1 + kSkinAtRest), 2.0 * max_radius);
-    for (int i = 0; i < n; ++i) {
-      if (s.lost[i]) continue;
-      list_anew(i, s, horizon);
-      if (i < s.movable) listed_.push_back(i);
-    }
+  listings_ = 0;
+  if (max_radius == 0) return;
+
+  grid_.reset(n, min_radius * (1 + kSkinAtRest), 2.0 * max_radius);
+  for (int i = 0; i < n; ++i) {
+    if (s.lost[i]) continue;
+    list_anew(i, s, horizon);
+    if (i < s.movable) listed_.push_back(i);
   }
-  find_pairs_of(listed_, s);
-  merge(s);
-  for (const Kept& k : kept) {
-    const int owner = static_cast<int>(k.key >> 32), other = static_cast<int>(k.key & 0xffffffffu);
-    const auto row = partner_.begin() + begin_[owner], row_end = partner_.begin() + begin_[owner + 1];
-    const auto at = std::lower_bound(row, row_end, other);
-    assert(at != row_end && *at == other);
-    const auto p = static_cast<std::size_t>(at - partner_.begin());
-    touching[p] = 1;
-    // Forces and moments act on piece 1, so they change sign with the order of the pieces.
-    const double sign = k.swapped ? -1.0 : 1.0;
-    history[p].shear = sign * old_history[k.pair].shear;
-    history[p].rolling = sign * old_history[k.pair].rolling;
-    rest_force[p] = sign * old_rest_force[k.pair];
-    rest_known[p] = old_rest_known[k.pair];
+  find_neighbours(listed_);
+
+  // Memory of a pair that was closed before, with the sign that goes with the new order of its pieces.
+  const auto carry = [&](int i, int j, Neighbour& entry) {
+    const int a = order[i], b = order[j];
+    if (a < 0 || b < 0) return;
+    const int owner = std::min(a, b), other = std::max(a, b);
+    if (owner >= old_rows.rows()) return;
+    const std::span<const Neighbour> row = old_rows.row(owner).subspan(old_below[owner]);
+    const int at = place_in(row, other);
+    if (at == static_cast<int>(row.size()) || row[at].sphere != other || !row[at].touching()) return;
+    ContactMemory& memory = memory_[entry.memory()];
+    memory = old_memory[row[at].memory()];
+    entry.tag |= 1u;
+    if (a < b) return;
+    for (int k = 0; k < 3; ++k) memory.shear[k] = -memory.shear[k], memory.rolling[k] = -memory.rolling[k];
+    memory.rest_x = -memory.rest_x, memory.rest_y = -memory.rest_y, memory.rest_z = -memory.rest_z;
+  };
+  for (std::size_t k = 0; k < listed_.size(); ++k) {
+    const int i = listed_[k];
+    row_.clear();
+    for (const int j : found(k)) {
+      Neighbour entry{j, 0};
+      if (j < i) {
+        const auto row = owned(j);
+        entry.tag = row[place_in(row, i)].tag & ~1u;
+        ++below_[i];
+      } else {
+        entry.tag = new_memory() << 1;
+        carry(i, j, entry);
+      }
+      row_.push_back(entry);
+    }
+    rows_.assign(i, row_);
   }
 }
 
-const std::vector<int>& PairList::repair(const Spheres& s, double horizon) {
+const std::vector<int>& PairList::repair(const Spheres& s, std::span<const int> awake, double horizon) {
   listed_.clear();
   std::sort(dropped_.begin(), dropped_.end());
-  for (const int i : dropped_) grid_.remove(i);
-  for (int i = 0; i < s.movable; ++i) {
-    if (s.lost[i] || s.asleep[i]) continue;
-    const Vec3& at = grid_.position(i);
-    if ((s.place[i].vec() - at).squaredNorm() > 0.5 * skin2_[i]) listed_.push_back(i);
+  for (const int i : dropped_) {
+    grid_.remove(i);
+    clear_row(i, s.movable);
+  }
+  dropped_.clear();
+  for (const int i : awake) {
+    if (s.lost[i]) continue;
+    const Quad &at = grid_.site(i), &x = s.place[i];
+    const double dx = x.x - at.x, dy = x.y - at.y, dz = x.z - at.z, skin = at.w - x.w;
+    if (dx * dx + dy * dy + dz * dz > kUsedUp2 * skin * skin) listed_.push_back(i);
   }
   for (const int i : listed_) list_anew(i, s, horizon);
-  for (const int i : dropped_) listed_.push_back(i);
-  find_pairs_of(listed_, s);
-  for (std::size_t k = 0; k < dropped_.size(); ++k) listed_.pop_back();
-  merge(s);
-  dropped_.clear();
+  listings_ += static_cast<std::int64_t>(listed_.size());
+  find_neighbours(listed_);
+  for (std::size_t k = 0; k < listed_.size(); ++k) apply(listed_[k], found(k), s.movable);
   return listed_;
 }
 
-void PairList::find_pairs_of(int i, std::vector<std::uint64_t>& found) const {
-  const Vec3& x = grid_.position(i);
-  const double reach = grid_.reach(i);
+void PairList::find_neighbours(int i, std::vector<int>& found) const {
+  const Quad at = grid_.site(i);
+  const std::size_t first = found.size();
   grid_.query(i, [&](int j) {
-    if (dirty_[j] && j < i) return;  // found from the other side
-    const double range = reach + grid_.reach(j);
-    if ((x - grid_.position(j)).squaredNorm() >= range * range) return;
-    found.push_back(static_cast<std::uint64_t>(std::min(i, j)) << 32 |
-                    static_cast<std::uint64_t>(std::max(i, j)));
+    const Quad& other = grid_.site(j);
+    const double dx = at.x - other.x, dy = at.y - other.y, dz = at.z - other.z, range = at.w + other.w;
+    if (dx * dx + dy * dy + dz * dz < range * range) found.push_back(j);
   });
+  std::sort(found.begin() + static_cast<std::ptrdiff_t>(first), found.end());
 }
 
-void PairList::find_pairs_of(const std::vector<int>& listed, const Spheres& s) {
-  found_.clear();
-  for (const int i : listed) dirty_[i] = 1;
-  const int count = static_cast<int>(listed.size());
-  if (for_ranges_ && count > kPart) {
-    const int parts = (count + kPart - 1) / kPart;
-    if (static_cast<int>(found_parts_.size()) < parts) found_parts_.resize(parts);
-    for_ranges_(parts, [&](int first, int last) {
-      for (int part = first; part < last; ++part) {
-        found_parts_[part].clear();
-        for (int k = part * kPart; k < std::min(count, (part + 1) * kPart); ++k)
-          if (!s.lost[listed[k]]) find_pairs_of(listed[k], found_parts_[part]);
-      }
-    });
-    for (int part = 0; part < parts; ++part)
-      found_.insert(found_.end(), found_parts_[part].begin(), found_parts_[part].end());
-  } else {
-    for (const int i : listed)
-      if (!s.lost[i]) find_pairs_of(i, found_);
-  }
-  std::sort(found_.begin(), found_.end());
-}
-
-void PairList::merge(const Spheres& s) {
-  const int n = s.size();
-  new_begin_.resize(n + 1);
-  new_partner_.clear();
-  new_history_.clear();
-  new_touching_.clear();
-  new_rest_force_.clear();
-  new_rest_known_.clear();
-  std::size_t f = 0;
-  for (int i = 0; i < n; ++i) {
-    new_begin_[i] = static_cast<int>(new_partner_.size());
-    int p = i < rows() ? begin_[i] : 0;
-    const int p_end = i < rows() ? begin_[i + 1] : 0;
-    while (true) {
-      const bool has_found = f < found_.size() && static_cast<int>(found_[f] >> 32) == i;
-      const int found =
-          has_found ? static_cast<int>(found_[f] & 0xffffffffu) : std::numeric_limits<int>::max();
-      if (p < p_end && partner_[p] <= found) {
-        const int j = partner_[p];
-        if (j == found || !(dirty_[i] || dirty_[j])) {
-          new_partner_.push_back(j);
-          new_history_.push_back(history[p]);
-          new_touching_.push_back(touching[p]);
-          new_rest_force_.push_back(rest_force[p]);
-          new_rest_known_.push_back(rest_known[p]);
-        }
-        if (j == found) ++f;
-        ++p;
-      } else if (has_found) {
-        new_partner_.push_back(found);
-        new_history_.emplace_back();
-        new_touching_.push_back(0);
-        new_rest_force_.push_back(Vec3::Zero());
-        new_rest_known_.push_back(0);
-        ++f;
-      } else {
-        break;
+void PairList::find_neighbours(const std::vector<int>& spheres) {
+  const int count = static_cast<int>(spheres.size()), parts = (count + kPart - 1) / kPart;
+  if (static_cast<int>(parts_.size()) < parts) parts_.resize(parts);
+  const auto search = [&](int first, int last) {
+    for (int p = first; p < last; ++p) {
+      Part& part = parts_[p];
+      part.found.clear();
+      part.ends.clear();
+      for (int k = p * kPart; k < std::min(count, (p + 1) * kPart); ++k) {
+        find_neighbours(spheres[k], part.found);
+        part.ends.push_back(static_cast<int>(part.found.size()));
       }
     }
-  }
-  new_begin_[n] = static_cast<int>(new_partner_.size());
-  begin_.swap(new_begin_);
-  partner_.swap(new_partner_);
-  history.swap(new_history_);
-  touching.swap(new_touching_);
-  rest_force.swap(new_rest_force_);
-  rest_known.swap(new_rest_known_);
-  for (const int i : listed_) dirty_[i] = 0;
-  for (const int i : dropped_) dirty_[i] = 0;
-  index_incoming(n);
+  };
+  if (for_ranges_ && parts > 1)
+    for_ranges_(parts, search);
+  else
+    search(0, parts);
 }
 
-void PairList::index_incoming(int count) {
-  incoming_begin.assign(count + 1, 0);
-  for (const int j : partner_) ++incoming_begin[j + 1];
-  for (int i = 0; i < count; ++i) incoming_begin[i + 1] += incoming_begin[i];
-  incoming_pair.resize(partner_.size());
-  owner_.resize(partner_.size());
-  next_.assign(incoming_begin.begin(), incoming_begin.end() - 1);
-  for (int i = 0; i < count; ++i)
-    for (int p = begin_[i]; p < begin_[i + 1]; ++p) {
-      owner_[p] = i;
-      incoming_pair[next_[partner_[p]]++] = p;
+std::span<const int> PairList::found(std::size_t k) const {
+  const Part& part = parts_[k / kPart];
+  const std::size_t at = k % kPart;
+  const int begin = at == 0 ? 0 : part.ends[at - 1];
+  return {part.found.data() + begin, static_cast<std::size_t>(part.ends[at] - begin)};
+}
+
+std::uint32_t PairList::new_memory() {
+  if (free_memory_.empty()) {
+    memory_.emplace_back();
+    return static_cast<std::uint32_t>(memory_.size() - 1);
+  }
+  const std::uint32_t id = free_memory_.back();
+  free_memory_.pop_back();
+  memory_[id] = {};
+  return id;
+}
+
+void PairList::add_entry(int i, Neighbour entry) {
+  rows_.insert(i, place_in(rows_.row(i), entry.sphere), entry);
+  if (entry.sphere < i) ++below_[i];
+}
+
+void PairList::take_entry(int i, int neighbour) {
+  rows_.erase(i, place_in(rows_.row(i), neighbour));
+  if (neighbour < i) --below_[i];
+}
+
+// Brings row i, and the entries of i in other rows, to what was found.
+void PairList::apply(int i, std::span<const int> found, int movable) {
+  row_.clear();
+  int below = 0;
+  const std::span<const Neighbour> old = rows_.row(i);
+  const auto part_with = [&](const Neighbour& entry) {
+    free_memory_.push_back(entry.memory());
+    if (entry.sphere < movable) take_entry(entry.sphere, i);
+  };
+  std::size_t k = 0;
+  new_.clear();
+  for (const int j : found) {
+    for (; k < old.size() && old[k].sphere < j; ++k) part_with(old[k]);
+    if (j < i) ++below;
+    if (k < old.size() && old[k].sphere == j) {
+      row_.push_back(old[k++]);
+      continue;
     }
+    row_.push_back({j, new_memory() << 1});
+    if (j < movable) new_.push_back(row_.back());
+  }
+  for (; k < old.size(); ++k) part_with(old[k]);
+  // New pairs enter the other rows when this one is not read any more: rows may move.
+  rows_.assign(i, row_);
+  below_[i] = below;
+  for (const Neighbour& entry : new_) add_entry(entry.sphere, {i, entry.tag});
+}
+
+void PairList::clear_row(int i, int movable) {
+  for (const Neighbour& entry : rows_.row(i)) {
+    free_memory_.push_back(entry.memory());
+    if (entry.sphere < movable) take_entry(entry.sphere, i);
+  }
+  rows_.assign(i, {});
+  below_[i] = 0;
+}
+
+std::size_t PairList::bytes() const {
+  return rows_.bytes() + below_.capacity() * sizeof(std::int32_t) +
+         memory_.capacity() * sizeof(ContactMemory) + free_memory_.capacity() * sizeof(std::uint32_t) +
+         grid_.bytes();
 }
 
 }  // namespace scree

@@ -3,21 +3,49 @@
 //
 // Each sphere has a skin. A pair is listed when the two reaches (radius plus skin), taken at the places where
 // the spheres were when last listed, overlap; the list is complete as long as no sphere has moved further
-// than its own skin. When one has, it and all others that used up half of theirs are listed anew from the
-// grid; pairs of the rest are kept as they stand. So a fast sphere repairs its own pairs and nobody else's.
-// The skin grows with speed.
+// than its own skin. When one has, it and all others that used up most of theirs are listed anew from the
+// grid; the rows of the rest are not looked at. So a fast sphere repairs its own pairs and nobody else's, and
+// a repair costs what has moved. The skin grows with speed.
 //
-// The list is in rows: the pairs of owner i (the smaller index) lie side by side, sorted by partner. Contact
-// memory lies beside the pair and moves with it: no look-up in a step.
+// Row i holds all neighbours of movable sphere i, rising; those above i are the pairs that it owns. Both rows
+// of a pair name the same contact memory, one cache line. Fixed balls have no rows.
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "sim/contact/rrlinear.h"
 #include "sim/world/grid.h"
+#include "sim/world/rows.h"
 #include "sim/world/spheres.h"
 
 namespace scree {
+
+/// What a contact remembers, as acting on its owner: two quads whose companions hold the force that a
+/// sleeping sphere has got used to.
+struct alignas(64) ContactMemory {
+  double shear[3] = {0, 0, 0};  ///< N
+  float rest_x = 0, rest_y = 0;
+  double rolling[3] = {0, 0, 0};  ///< N m
+  float rest_z = 0;
+  std::int32_t rest_known = 1;  ///< the rest force is known (a contact that is not there has none)
+
+  BasicContactHistory<double> history() const {
+    return {{shear[0], shear[1], shear[2]}, {rolling[0], rolling[1], rolling[2]}};
+  }
+  /// Forgets what the contact held; the rest force stays.
+  void open() {
+    for (int k = 0; k < 3; ++k) shear[k] = rolling[k] = 0;
+  }
+};
+
+/// An entry of a row.
+struct Neighbour {
+  std::int32_t sphere;
+  std::uint32_t tag;  ///< memory << 1; the lowest bit, in the owner's row only: the contact is closed
+  std::uint32_t memory() const { return tag >> 1; }
+  bool touching() const { return (tag & 1u) != 0; }
+};
 
 class PairList {
  public:
@@ -27,64 +55,65 @@ class PairList {
   void use_threads(ForRanges for_ranges) { for_ranges_ = std::move(for_ranges); }
 
   /// Lists everything from scratch after spheres were added or re-sorted. `order[k]` is the old index of new
-  /// sphere k, or -1 for a new one; contact memory of old pairs is carried over.
+  /// sphere k, or -1 for a new one; memory of closed contacts is carried over.
   void rebuild(const Spheres& spheres, const std::vector<int>& order, double horizon);
 
   /// True if sphere i may have left its skin.
   bool left_skin(int i, const Quad& place) const {
-    const Vec3& at = grid_.position(i);
-    const double dx = place.x - at.x(), dy = place.y - at.y(), dz = place.z - at.z();
-    return dx * dx + dy * dy + dz * dz > skin2_[i];
+    const Quad& at = grid_.site(i);
+    const double dx = place.x - at.x, dy = place.y - at.y, dz = place.z - at.z, skin = at.w - place.w;
+    return dx * dx + dy * dy + dz * dz > skin * skin;
   }
 
-  /// Repairs the lists of all spheres that used up half of their skin. `horizon` (s): skins hold what a
+  /// Repairs the rows of those of `awake` that used up most of their skin. `horizon` (s): skins hold what a
   /// sphere moves in this time. Returns the spheres listed anew, rising; valid until the next call.
-  const std::vector<int>& repair(const Spheres& spheres, double horizon);
+  const std::vector<int>& repair(const Spheres& spheres, std::span<const int> awake, double horizon);
 
-  /// Takes a sphere out for good.
+  /// Takes a sphere out for good, at the next repair.
   void drop(int i) { dropped_.push_back(i); }
 
-  int rows() const { return static_cast<int>(begin_.size()) - 1; }
-  int begin(int i) const { return begin_[i]; }
-  int end(int i) const { return begin_[i + 1]; }
-  int partner(int p) const { return partner_[p]; }
-  std::size_t size() const { return partner_.size(); }
-  double skin(int i) const { return grid_.reach(i) - radius_[i]; }
-  const Vec3& listed_at(int i) const { return grid_.position(i); }
-
-  // Contact memory, one a pair; `touching` tells whether it holds anything.
-  std::vector<ContactHistory> history;
-  std::vector<std::uint8_t> touching;
-  // Force that a sleeping sphere of the pair has got used to (N, on the owner), once `rest_known` is set.
-  std::vector<Vec3> rest_force;
-  std::vector<std::uint8_t> rest_known;
-
-  /// For each sphere, the pairs in which it is the partner, rising, and the owner of each pair.
-  std::vector<int> incoming_begin, incoming_pair;
-  int owner(int p) const { return owner_[p]; }
+  int rows() const { return rows_.rows(); }
+  /// All neighbours of movable sphere i, rising.
+  std::span<const Neighbour> neighbours(int i) const { return rows_.row(i); }
+  /// Those that it owns: above i.
+  std::span<const Neighbour> owned(int i) const { return rows_.row(i).subspan(below_[i]); }
+  std::span<Neighbour> owned(int i) { return rows_.row(i).subspan(below_[i]); }
+  ContactMemory& memory(const Neighbour& n) { return memory_[n.memory()]; }
+  const ContactMemory& memory(const Neighbour& n) const { return memory_[n.memory()]; }
+  ContactMemory* memories() { return memory_.data(); }
+  double skin(int i, const Quad& place) const { return grid_.site(i).w - place.w; }
+  Vec3 listed_at(int i) const { return grid_.site(i).vec(); }
+  /// Spheres listed since the last rebuild, each as often as it was.
+  std::int64_t listings() const { return listings_; }
+  /// Bytes held by rows, memories and grid.
+  std::size_t bytes() const;
 
  private:
   void list_anew(int i, const Spheres& spheres, double horizon);
-  void find_pairs_of(const std::vector<int>& listed, const Spheres& spheres);
-  void find_pairs_of(int i, std::vector<std::uint64_t>& found) const;
-  void merge(const Spheres& spheres);
-  void index_incoming(int count);
+  void find_neighbours(const std::vector<int>& spheres);
+  void find_neighbours(int i, std::vector<int>& found) const;
+  std::span<const int> found(std::size_t k) const;
+  void apply(int i, std::span<const int> found, int movable);
+  void clear_row(int i, int movable);
+  std::uint32_t new_memory();
+  void add_entry(int i, Neighbour entry);
+  void take_entry(int i, int neighbour);
 
   NeighbourGrid grid_;
-  std::vector<double> radius_, skin2_;
-  std::vector<int> begin_{0}, partner_, owner_;
-  std::vector<std::uint8_t> dirty_;
+  Rows<Neighbour> rows_;
+  std::vector<std::int32_t> below_;  // entries of a row below its own number
+  std::vector<ContactMemory> memory_;
+  std::vector<std::uint32_t> free_memory_;
   std::vector<int> listed_, dropped_;
-  std::vector<std::uint64_t> found_;  // owner << 32 | partner
-  std::vector<std::vector<std::uint64_t>> found_parts_;
+  std::int64_t listings_ = 0;
   ForRanges for_ranges_;
 
-  // Buffers of merge, kept to avoid allocation.
-  std::vector<int> new_begin_, new_partner_;
-  std::vector<ContactHistory> new_history_;
-  std::vector<std::uint8_t> new_touching_, new_rest_known_;
-  std::vector<Vec3> new_rest_force_;
-  std::vector<int> next_;
+  // What a search found, part by part: neighbours of the spheres of a part, one list after another.
+  struct Part {
+    std::vector<int> found, ends;
+  };
+  std::vector<Part> parts_;
+  std::vector<Neighbour> row_, new_;
 };
 
 }  // namespace scree

@@ -8,20 +8,20 @@
 //      apart (Vyas et al., Computer Physics Communications 310, 2025);
 //   2. gravity and local damping; v(t + dt/2) = v(t - dt/2) + a dt; x(t + dt) = x(t) + v(t + dt/2) dt;
 //   3. tools move; spheres that may have left their skin are listed anew.
-// The step is recomputed as the run goes on: safety * min over spheres and axes of sqrt(m / k), sqrt(I /
-// k_rot) with k summed over the contacts a sphere has and those it may soon have. Spheres at rest may sleep
-// (sleep.h).
+// The step is recomputed as the run goes on: safety * min over the spheres that move and their axes of sqrt(m
+// / k), sqrt(I / k_rot) with k summed over the contacts a sphere has and those it may soon have; a sphere
+// that wakes brings its own bound. Spheres at rest may sleep (sleep.h).
 //
-// Sums over contacts run in a fixed order: a sphere's force is (contacts in which it is partner, by owner) +
-// (contacts it owns, by partner) + (meshes), whether one thread adds as it goes or several gather afterwards,
-// so results are bitwise the same for any number of threads.
+// Sums over contacts run in a fixed order (step_kernels.h), so results are bitwise the same for any number of
+// threads.
 #include <tbb/task_arena.h>
 
 #include "sim/contact/rrlinear.h"
-#include "sim/world/mesh_contact.h"
+#include "sim/world/facet_list.h"
 #include "sim/world/pair_list.h"
 #include "sim/world/rock_world.h"
 #include "sim/world/sleep.h"
+#include "sim/world/step_kernels.h"
 
 namespace scree {
 
@@ -33,6 +33,8 @@ class RrlinearWorld final : public RockWorld {
   const PairList& pairs() const { return pairs_; }
   /// Contacts of a sphere with meshes now (index as in spheres()).
   std::vector<MeshContact> mesh_contacts(int index) const;
+  /// Bytes held for spheres and contacts, without Bullet's bodies.
+  std::size_t bytes() const;
   /// Bullet's own entry: steps by `span` seconds.
   int stepSimulation(btScalar span, int max_sub_steps = 1, btScalar fixed = 1. / 60) override;
   void update_bullet() override;
@@ -43,47 +45,37 @@ class RrlinearWorld final : public RockWorld {
   void sphere_lost(int index) override;
 
  private:
-  struct PairForce {
-    double force[3], torque[3];  // on the partner
-  };
   void prepare();
   void step(double dt);
+  void split_into_blocks();
   void forces();
-  template <bool kScatter>
-  double pair_forces(int first, int last);
-  double mesh_forces(int first, int last);
-  void gather(int first, int last);
-  bool integrate(int first, int last, double dt);
+  void add_far_forces();
+  void mesh_forces(BlockWork& work);
   void move_tools();
   void repair();
-  void list_facets(const std::vector<int>& listed, bool tools_moved);
-  double stable_step(bool sleepers_too);
+  void wake(std::vector<int>& disturbed);
+  double own_step2(int i) const;
+  double stable_step();
   void find_watched();
   double horizon() const;
   bool several_threads() const { return settings_.threads > 1; }
   template <class Body>
-  double for_ranges(int count, Body&& body);
+  void for_blocks(Body&& body);
 
   ContactLaw law_;
-  bool changed_ = true;            // spheres or meshes were added or removed
-  bool repair_due_ = false;        // a sphere may have left its skin, or was lost
-  std::vector<double> own_step2_;  // square of each sphere's own stable step, s2
-  double dt_ = 0;                  // stable step, s
-  double last_dt_ = 0;             // the step that led to the present places, s
+  bool changed_ = true;      // spheres or meshes were added or removed
+  bool repair_due_ = false;  // a sphere may have left its skin, or was lost
+  double dt_ = 0;            // stable step, s
+  double last_dt_ = 0;       // the step that led to the present places, s
   int steps_to_check_ = 0;
-  std::int64_t next_sort_ = 0;  // step
   PairList pairs_;
-  std::vector<Quad> incoming_force_, incoming_torque_;  // from contacts in which the sphere is partner
-  std::vector<PairForce> pair_force_;                   // several threads only
-  // Facets near each movable sphere, in rows; spheres with none have an empty row.
-  std::vector<int> facet_begin_;
-  std::vector<FacetRef> facets_;
-  std::vector<int> slot_of_;  // first slot of a sphere, or -1
-  std::vector<MeshContact> slots_;
-  std::vector<int> facet_rows_;  // spheres with facets, rising
-  double tool_skin_ = 0;
+  FacetList facets_;
   Sleep sleep_;
   std::vector<std::uint8_t> watched_;  // near a tool that moves: does not sleep
+  std::vector<ForceSum> near_, far_;
+  std::vector<BlockWork> blocks_;  // those with anything to do
+  std::vector<int> disturbed_;
+  bool blocks_due_ = true;  // who is awake, or which rows are active, has changed
   std::unique_ptr<tbb::task_arena> arena_;
 };
 

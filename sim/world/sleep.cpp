@@ -9,30 +9,31 @@ namespace {
 constexpr double kWindow = 3.0;         // times sqrt(smallest radius / g)
 constexpr double kQuietTravel = 0.005;  // of the radius, in one window
 constexpr double kQuietPull = 0.1;      // of the weight
-constexpr double kWake = 0.1;           // of (weight + mean contact force)
 constexpr int kQuietWindows = 2;
 
+double overlap_of(const Spheres& s, int i, int j) {
+  return s.place[i].w + s.place[j].w - (s.place[i].vec() - s.place[j].vec()).norm();
+}
+
 // Square of the change of a contact force that wakes sphere i (N^2).
-double wake_limit2(int i, const Spheres& s, const PairList& pairs, const ContactLaw& law, double gravity) {
+double wake_limit2(int i, const Spheres& s, const PairList& pairs, const ContactLaw& law, double gravity,
+                   double tolerance) {
   double sum = 0;
   int contacts = 0;
-  const auto add = [&](int p, int a, int b) {
-    if (!pairs.touching[p]) return;
-    const double overlap = s.place[a].w + s.place[b].w - (s.place[a].vec() - s.place[b].vec()).norm();
-    sum += ball_ball(law, s.place[a].w, s.place[b].w).kn * std::max(overlap, 0.0);
+  for (const Neighbour& n : pairs.neighbours(i)) {
+    const double overlap = overlap_of(s, i, n.sphere);
+    if (overlap <= 0) continue;
+    sum += ball_ball(law, s.place[i].w, s.place[n.sphere].w).kn * overlap;
     ++contacts;
-  };
-  for (int p = pairs.begin(i); p < pairs.end(i); ++p) add(p, i, pairs.partner(p));
-  for (int k = pairs.incoming_begin[i]; k < pairs.incoming_begin[i + 1]; ++k)
-    add(pairs.incoming_pair[k], pairs.owner(pairs.incoming_pair[k]), i);
-  const double limit = kWake * (s.velocity[i].w * gravity + (contacts > 0 ? sum / contacts : 0.0));
+  }
+  const double limit = tolerance * (s.velocity[i].w * gravity + (contacts > 0 ? sum / contacts : 0.0));
   return limit * limit;
 }
 
 }  // namespace
 
 void Sleep::renumber(const std::vector<int>& order, Spheres& s, PairList& pairs,
-                     const std::vector<std::uint8_t>& awake, double time, double gravity) {
+                     const std::vector<std::uint8_t>& stay_awake, double time, double gravity) {
   const int n = s.movable;
   double smallest = 1e300;
   for (int i = 0; i < n; ++i) smallest = std::min(smallest, s.place[i].w);
@@ -44,95 +45,116 @@ void Sleep::renumber(const std::vector<int>& order, Spheres& s, PairList& pairs,
   std::vector<std::uint8_t> quiet(n, 0);
   std::vector<double> tolerance2(n, 0.0);
   asleep_ = 0;
+  awake_.clear();
   for (int i = 0; i < n; ++i) {
     const int old = order[i];
     start[i] = old < known ? window_start_[old] : s.place[i].vec();
     if (old < known) quiet[i] = quiet_windows_[old], tolerance2[i] = tolerance2_[old];
-    if (!s.asleep[i]) continue;
-    if (awake[i]) {
+    if (s.asleep[i] && stay_awake[i]) {
       s.asleep[i] = 0;
       quiet[i] = 0;
-      forget_rest(i, pairs);
-    } else {
-      ++asleep_;
+      forget_rest(i, s, pairs);
     }
+    if (s.asleep[i])
+      ++asleep_;
+    else if (!s.lost[i])
+      awake_.push_back(i);
   }
   window_start_.swap(start);
   quiet_windows_.swap(quiet);
   tolerance2_.swap(tolerance2);
-  disturbed_.assign(n, 0);
-  any_disturbed_ = false;
-  row_active_.assign(s.size(), 1);
-  mark_rows(s, pairs);
+  row_active_.assign(n, 0);
+  active_rows_.clear();
+  find_active_rows(s, pairs);
 }
 
-void Sleep::mark_rows(const Spheres& s, const PairList& pairs) {
-  if (!on_) return;
-  for (int i = 0; i < s.movable; ++i) {
-    bool active = !s.asleep[i];
-    for (int p = pairs.begin(i); !active && p < pairs.end(i); ++p) {
-      const int j = pairs.partner(p);
-      active = j < s.movable && !s.asleep[j];
+void Sleep::find_active_rows(const Spheres& s, const PairList& pairs) {
+  if (asleep_ == 0) {
+    active_rows_ = awake_;
+    return;
+  }
+  active_rows_.clear();
+  for (const int i : awake_) {
+    row_active_[i] = 1;
+    active_rows_.push_back(i);
+  }
+  const std::size_t own = active_rows_.size();
+  for (const int i : awake_)
+    for (const Neighbour& n : pairs.neighbours(i)) {
+      if (n.sphere >= i) break;
+      if (row_active_[n.sphere] || s.lost[n.sphere]) continue;
+      row_active_[n.sphere] = 1;
+      active_rows_.push_back(n.sphere);
     }
-    row_active_[i] = active ? 1 : 0;
+  for (const int i : active_rows_) row_active_[i] = 0;
+  std::sort(active_rows_.begin() + static_cast<std::ptrdiff_t>(own), active_rows_.end());
+  std::inplace_merge(active_rows_.begin(), active_rows_.begin() + static_cast<std::ptrdiff_t>(own),
+                     active_rows_.end());
+}
+
+void Sleep::lose(int i, const Spheres& s) {
+  if (i < static_cast<int>(quiet_windows_.size()) && s.asleep[i]) --asleep_;
+  std::erase(awake_, i);
+  std::erase(active_rows_, i);
+}
+
+// A contact that is open now has a rest force of nothing; that of a closed one is learnt at the next step.
+void Sleep::forget_rest(int i, const Spheres& s, PairList& pairs) {
+  for (const Neighbour& n : pairs.neighbours(i)) {
+    ContactMemory& contact = pairs.memory(n);
+    contact.rest_x = contact.rest_y = contact.rest_z = 0;
+    contact.rest_known = overlap_of(s, i, n.sphere) > 0 ? 0 : 1;
   }
 }
 
-void Sleep::forget_rest(int i, PairList& pairs) {
-  for (int p = pairs.begin(i); p < pairs.end(i); ++p) pairs.rest_known[p] = 0;
-  for (int k = pairs.incoming_begin[i]; k < pairs.incoming_begin[i + 1]; ++k)
-    pairs.rest_known[pairs.incoming_pair[k]] = 0;
-}
-
-void Sleep::look(Spheres& s, PairList& pairs, const std::vector<std::uint8_t>& awake, const ContactLaw& law,
-                 double time, const Vec3& gravity) {
+void Sleep::look(Spheres& s, PairList& pairs, const std::vector<std::uint8_t>& stay_awake,
+                 const ContactLaw& law, double time, const Vec3& gravity) {
   if (!on_ || time < window_end_) return;
   window_end_ = time + window_;
   const double g = gravity.norm();
-  bool any = false;
-  for (int i = 0; i < s.movable; ++i) {
-    if (s.lost[i] || s.asleep[i]) continue;
+  std::size_t kept = 0;
+  for (const int i : awake_) {
     const Vec3 x = s.place[i].vec();
     const double radius = s.place[i].w, weight = s.velocity[i].w * g;
     const double travel = (x - window_start_[i]).norm();
     window_start_[i] = x;
     const double pull = (s.force[i].vec() + s.velocity[i].w * gravity).norm();
-    const bool quiet = !awake[i] && s.force[i].w > 0 && travel < kQuietTravel * radius &&
+    const bool quiet = !stay_awake[i] && s.force[i].w > 0 && travel < kQuietTravel * radius &&
                        pull < kQuietPull * weight &&
                        s.velocity[i].vec().norm() * window_ < 2.0 * kQuietTravel * radius;
     quiet_windows_[i] = quiet ? static_cast<std::uint8_t>(quiet_windows_[i] + 1) : std::uint8_t{0};
-    if (quiet_windows_[i] < kQuietWindows) continue;
-
-    tolerance2_[i] = wake_limit2(i, s, pairs, law, g);
+    if (quiet_windows_[i] < kQuietWindows) {
+      awake_[kept++] = i;
+      continue;
+    }
+    tolerance2_[i] = wake_limit2(i, s, pairs, law, g, wake_tolerance_);
     s.asleep[i] = 1;
     s.velocity[i].set(Vec3::Zero());
     s.spin[i].set(Vec3::Zero());
-    forget_rest(i, pairs);
+    forget_rest(i, s, pairs);
     ++asleep_;
-    any = true;
   }
-  if (any) mark_rows(s, pairs);
+  if (kept == awake_.size()) return;
+  awake_.resize(kept);
+  find_active_rows(s, pairs);
 }
 
-void Sleep::wake(int i, Spheres& s, PairList& pairs) {
-  s.asleep[i] = 0;
-  quiet_windows_[i] = 0;
-  window_start_[i] = s.place[i].vec();
-  forget_rest(i, pairs);
-  row_active_[i] = 1;
-  for (int k = pairs.incoming_begin[i]; k < pairs.incoming_begin[i + 1]; ++k)
-    row_active_[pairs.owner(pairs.incoming_pair[k])] = 1;
-  --asleep_;
-}
-
-void Sleep::wake_disturbed(Spheres& s, PairList& pairs) {
-  if (!any_disturbed_) return;
-  any_disturbed_ = false;
-  for (int i = 0; i < s.movable; ++i)
-    if (disturbed_[i]) {
-      disturbed_[i] = 0;
-      if (s.asleep[i]) wake(i, s, pairs);
-    }
+bool Sleep::wake(std::vector<int>& disturbed, Spheres& s, PairList& pairs) {
+  std::sort(disturbed.begin(), disturbed.end());
+  const auto before = static_cast<std::ptrdiff_t>(awake_.size());
+  for (const int i : disturbed) {
+    if (!s.asleep[i]) continue;
+    s.asleep[i] = 0;
+    quiet_windows_[i] = 0;
+    window_start_[i] = s.place[i].vec();
+    forget_rest(i, s, pairs);
+    awake_.push_back(i);
+    --asleep_;
+  }
+  if (static_cast<std::ptrdiff_t>(awake_.size()) == before) return false;
+  std::inplace_merge(awake_.begin(), awake_.begin() + before, awake_.end());
+  find_active_rows(s, pairs);
+  return true;
 }
 
 }  // namespace scree

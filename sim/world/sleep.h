@@ -5,8 +5,11 @@
 // radius, and pulled by less than kQuietPull of its weight. Its place is then frozen; contacts between two
 // sleepers keep their forces and are not computed. Contacts between a sleeper and an awake sphere are: the
 // sleeper remembers the force it has got used to, and wakes when the force of any one contact has changed by
-// more than kWake times (its weight + the mean of its contact forces). A sphere near a tool that moves does
-// not sleep.
+// more than the tolerance times (its weight + the mean of its contact forces). A sphere near a tool that
+// moves does not sleep.
+//
+// Whatever is done every step goes over the lists kept here, not over all spheres.
+#include <span>
 #include <vector>
 
 #include "sim/world/pair_list.h"
@@ -16,48 +19,58 @@ namespace scree {
 
 class Sleep {
  public:
-  explicit Sleep(bool on) : on_(on) {}
+  Sleep(bool on, double wake_tolerance) : on_(on), wake_tolerance_(wake_tolerance) {}
   bool on() const { return on_; }
 
+  /// Spheres that move, rising.
+  std::span<const int> awake() const { return awake_; }
+  /// Rows of the pair list with anything to compute, rising: owners that are awake, or have an awake partner.
+  std::span<const int> active_rows() const { return active_rows_; }
+
   /// After spheres were re-sorted or added: `order[k]` is the old index of sphere k; what is known of it
-  /// follows. `awake[i]`: must not sleep.
+  /// follows. `stay_awake[i]`: must not sleep.
   void renumber(const std::vector<int>& order, Spheres& spheres, PairList& pairs,
-                const std::vector<std::uint8_t>& awake, double time, double gravity);
-  /// Lists which rows of the pair list have anything to compute; after the lists were repaired.
-  void mark_rows(const Spheres& spheres, const PairList& pairs);
-  bool row_active(int i) const { return row_active_[i] != 0; }
+                const std::vector<std::uint8_t>& stay_awake, double time, double gravity);
+  /// Lists the active rows anew; after the pair list was repaired.
+  void find_active_rows(const Spheres& spheres, const PairList& pairs);
+  /// A sphere has left the model.
+  void lose(int i, const Spheres& spheres);
 
-  /// At the end of a window puts quiet spheres to sleep. Spheres::force holds the
-  /// contact forces of the last step.
-  void look(Spheres& spheres, PairList& pairs, const std::vector<std::uint8_t>& awake, const ContactLaw& law,
-            double time, const Vec3& gravity);
+  /// At the end of a window puts quiet spheres to sleep. Spheres::force holds the contact forces of the last
+  /// step. `stay_awake[i]`: must not sleep.
+  void look(Spheres& spheres, PairList& pairs, const std::vector<std::uint8_t>& stay_awake,
+            const ContactLaw& law, double time, const Vec3& gravity);
 
-  /// A contact of a sleeper (with an awake sphere) has this force now. Safe from several threads.
-  void feel(PairList& pairs, int p, int sleeper, const Vec3& force) {
-    if (!pairs.rest_known[p]) {
-      pairs.rest_known[p] = 1;
-      pairs.rest_force[p] = force;
-    } else if ((force - pairs.rest_force[p]).squaredNorm() > tolerance2_[sleeper]) {
-      __atomic_store_n(&disturbed_[sleeper], std::uint8_t{1}, __ATOMIC_RELAXED);
-      __atomic_store_n(&any_disturbed_, true, __ATOMIC_RELAXED);
-    }
+  /// A closed contact of a sleeper with an awake sphere has this force now. True if it wakes the sleeper.
+  bool disturbs(ContactMemory& contact, int sleeper, const Vec3& force) const {
+    const Vec3 change = force - Vec3(contact.rest_x, contact.rest_y, contact.rest_z);
+    if (contact.rest_known != 0) return change.squaredNorm() > tolerance2_[sleeper];
+    contact.rest_known = 1;
+    contact.rest_x = static_cast<float>(force.x());
+    contact.rest_y = static_cast<float>(force.y());
+    contact.rest_z = static_cast<float>(force.z());
+    return false;
   }
-  /// Wakes those that felt a disturbance.
-  void wake_disturbed(Spheres& spheres, PairList& pairs);
-  /// Wakes one sphere.
-  void wake(int i, Spheres& spheres, PairList& pairs);
+  /// Wakes these (in any order, each as often as it likes); true if any was asleep.
+  bool wake(std::vector<int>& disturbed, Spheres& spheres, PairList& pairs);
   std::int64_t asleep() const { return asleep_; }
+  /// Bytes held.
+  std::size_t bytes() const {
+    return window_start_.capacity() * (sizeof(Vec3) + 2 + sizeof(double)) +
+           (awake_.capacity() + active_rows_.capacity()) * sizeof(int);
+  }
 
  private:
-  static void forget_rest(int i, PairList& pairs);
+  static void forget_rest(int i, const Spheres& spheres, PairList& pairs);
 
   bool on_;
+  double wake_tolerance_;
   double window_ = 0, window_end_ = 0;  // s
   std::vector<Vec3> window_start_;      // places
   std::vector<std::uint8_t> quiet_windows_;
   std::vector<double> tolerance2_;  // N^2
-  std::vector<std::uint8_t> disturbed_, row_active_;
-  bool any_disturbed_ = false;
+  std::vector<int> awake_, active_rows_;
+  std::vector<std::uint8_t> row_active_;
   std::int64_t asleep_ = 0;
 };
 

@@ -55,7 +55,6 @@ std::vector<int> sort_spheres(Spheres& s, const std::vector<std::uint8_t>& fixed
   permute(s.velocity, order);
   permute(s.spin, order);
   permute(s.force, order);
-  permute(s.torque, order);
   permute(s.id, order);
   permute(s.dump, order);
   permute(s.lost, order);

@@ -3,17 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/material/vector.h"
+#include "sim/contact/quad.h"
 
 namespace scree {
-
-/// Three components and one companion that is always read with them.
-struct alignas(32) Quad {
-  double x = 0, y = 0, z = 0, w = 0;
-  Vec3 vec() const { return {x, y, z}; }
-  void set(const Vec3& v) { x = v.x(), y = v.y(), z = v.z(); }
-  void add(const Vec3& v) { x += v.x(), y += v.y(), z += v.z(); }
-};
 
 /// A sphere to be put into the world.
 struct NewSphere {
@@ -31,7 +23,6 @@ struct Spheres {
   std::vector<Quad> velocity;  ///< m/s; w: mass kg
   std::vector<Quad> spin;      ///< rad/s; w: moment of inertia kg m2
   std::vector<Quad> force;     ///< of all contacts in the last step, N; w: their number
-  std::vector<Quad> torque;    ///< N m
   std::vector<std::int64_t> id;
   std::vector<std::int32_t> dump;
   std::vector<std::uint8_t> lost;    ///< has left the model; takes no part any more
@@ -39,6 +30,8 @@ struct Spheres {
   int movable = 0;
 
   int size() const { return static_cast<int>(place.size()); }
+  /// Bytes held.
+  std::size_t bytes() const { return place.capacity() * (4 * sizeof(Quad) + 14); }
 };
 
 /// Orders movable spheres along a Morton curve (lost ones last), fixed balls likewise behind them. Returns

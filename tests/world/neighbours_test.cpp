@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "sim/material/random.h"
 #include "sim/world/grid.h"
@@ -32,7 +33,6 @@ Spheres random_spheres(int count, int fixed, std::uint64_t seed) {
     s.velocity.push_back(velocity);
     s.spin.emplace_back();
     s.force.emplace_back();
-    s.torque.emplace_back();
     s.id.push_back(i);
     s.dump.push_back(1);
     s.lost.push_back(0);
@@ -47,38 +47,55 @@ double gap(const Spheres& s, int i, int j) {
   return d - s.place[i].w - s.place[j].w;
 }
 
-std::set<Pair> listed_pairs(const PairList& list, int count) {
+// All pairs, by their owners; checks that both rows of a pair know of it.
+std::set<Pair> listed_pairs(const PairList& list) {
   std::set<Pair> pairs;
-  EXPECT_EQ(list.rows(), count);
-  for (int i = 0; i < list.rows(); ++i)
-    for (int p = list.begin(i); p < list.end(i); ++p) {
-      EXPECT_LT(i, list.partner(p));
-      EXPECT_TRUE(pairs.emplace(i, list.partner(p)).second)
-          << "listed twice: " << i << " " << list.partner(p);
-      if (p > list.begin(i)) {
-        EXPECT_LT(list.partner(p - 1), list.partner(p));
+  for (int i = 0; i < list.rows(); ++i) {
+    const auto row = list.neighbours(i);
+    for (std::size_t k = 1; k < row.size(); ++k) EXPECT_LT(row[k - 1].sphere, row[k].sphere);
+    EXPECT_EQ(row.size() - list.owned(i).size(),
+              static_cast<std::size_t>(
+                  std::count_if(row.begin(), row.end(), [&](const Neighbour& n) { return n.sphere < i; })));
+    for (const Neighbour& n : list.owned(i)) {
+      EXPECT_GT(n.sphere, i);
+      pairs.emplace(i, n.sphere);
+      if (n.sphere >= list.rows()) continue;
+      const auto other = list.neighbours(n.sphere);
+      const auto back =
+          std::find_if(other.begin(), other.end(), [&](const Neighbour& m) { return m.sphere == i; });
+      EXPECT_NE(back, other.end());
+      if (back != other.end()) {
+        EXPECT_EQ(back->memory(), n.memory());
       }
     }
+  }
   return pairs;
+}
+
+std::vector<int> all_in_the_model(const Spheres& s) {
+  std::vector<int> spheres;
+  for (int i = 0; i < s.movable; ++i)
+    if (!s.lost[i]) spheres.push_back(i);
+  return spheres;
 }
 
 // What a step does: marks pairs that touch, and gives each a memory of its own; returns it by pair.
 std::map<Pair, double> touch(PairList& list, const Spheres& s, double& next) {
   std::map<Pair, double> memory;
   for (int i = 0; i < list.rows(); ++i)
-    for (int p = list.begin(i); p < list.end(i); ++p) {
-      if (gap(s, i, list.partner(p)) >= 0) {
-        list.touching[p] = 0;
-        list.history[p] = {};
+    for (Neighbour& n : list.owned(i)) {
+      ContactMemory& contact = list.memory(n);
+      if (gap(s, i, n.sphere) >= 0) {
+        n.tag &= ~1u;
+        contact.open();
         continue;
       }
-      if (!list.touching[p]) {
-        list.touching[p] = 1;
-        list.history[p].shear = Vec3(next, 0, 0);
-        list.history[p].rolling = Vec3(0, next, 0);
+      if (!n.touching()) {
+        n.tag |= 1u;
+        contact.shear[0] = contact.rolling[1] = next;
         next += 1;
       }
-      memory[{i, list.partner(p)}] = list.history[p].shear.x();
+      memory[{i, n.sphere}] = contact.shear[0];
     }
   return memory;
 }
@@ -105,8 +122,8 @@ TEST(NeighbourGrid, QueryFindsEveryOverlapOfReachesOnce) {
           EXPECT_EQ(found.count(j), 0u);
           continue;
         }
-        const double range = grid.reach(i) + grid.reach(j);
-        if ((grid.position(i) - grid.position(j)).norm() < range)
+        const double range = grid.site(i).w + grid.site(j).w;
+        if ((grid.site(i).vec() - grid.site(j).vec()).norm() < range)
           EXPECT_EQ(found.count(j), 1u);
         else
           EXPECT_LE(found.count(j), 1u);
@@ -143,10 +160,10 @@ TEST(PairList, EveryOverlapIsListedOnceAndKeepsItsMemoryOverRepairs) {
       left = true;
     }
     if (left) {
-      list.repair(s, 1.0);
+      list.repair(s, all_in_the_model(s), 1.0);
       ++repairs;
     }
-    const std::set<Pair> pairs = listed_pairs(list, count);
+    const std::set<Pair> pairs = listed_pairs(list);
     int missing = 0;
     for (int i = 0; i < s.movable; ++i)
       for (int j = i + 1; j < count; ++j) {
@@ -155,23 +172,22 @@ TEST(PairList, EveryOverlapIsListedOnceAndKeepsItsMemoryOverRepairs) {
       }
     ASSERT_EQ(missing, 0) << "after repair " << repairs;
     for (const Pair& pair : pairs) ASSERT_FALSE(s.lost[pair.first] || s.lost[pair.second]);
-    for (int p = 0; p < static_cast<int>(list.size()); ++p) {
-      const Pair pair{list.owner(p), list.partner(p)};
-      ASSERT_TRUE(p >= list.begin(pair.first) && p < list.end(pair.first));
-      const auto before = memory.find(pair);
-      if (before == memory.end()) {
-        ASSERT_FALSE(list.touching[p]);
-        continue;
+    std::set<std::uint32_t> memories;
+    for (int i = 0; i < list.rows(); ++i)
+      for (const Neighbour& n : std::as_const(list).owned(i)) {
+        ASSERT_TRUE(memories.insert(n.memory()).second) << "two pairs share a memory";
+        const auto before = memory.find({i, n.sphere});
+        if (before == memory.end()) {
+          ASSERT_FALSE(n.touching());
+          ASSERT_EQ(list.memory(n).shear[0], 0.0);
+          continue;
+        }
+        if (gap(s, i, n.sphere) >= 0) continue;  // has parted
+        ASSERT_TRUE(n.touching());
+        ASSERT_EQ(list.memory(n).shear[0], before->second);
+        ASSERT_EQ(list.memory(n).rolling[1], before->second);
+        ++kept;
       }
-      if (gap(s, pair.first, pair.second) >= 0) continue;  // has parted
-      ASSERT_TRUE(list.touching[p]);
-      ASSERT_EQ(list.history[p].shear.x(), before->second);
-      ASSERT_EQ(list.history[p].rolling.y(), before->second);
-      ++kept;
-    }
-    for (int j = 0; j < count; ++j)
-      for (int k = list.incoming_begin[j]; k < list.incoming_begin[j + 1]; ++k)
-        ASSERT_EQ(list.partner(list.incoming_pair[k]), j);
     memory = touch(list, s, next);
   }
   EXPECT_GT(kept, 1000);
@@ -193,12 +209,12 @@ TEST(PairList, MemoryFollowsSpheresThatAreRenumbered) {
   list.rebuild(s, order, 0.0);
   std::size_t found = 0;
   for (int i = 0; i < count; ++i)
-    for (int p = list.begin(i); p < list.end(i); ++p) {
-      if (!list.touching[p]) continue;
-      const auto before = memory.find({count - 1 - list.partner(p), count - 1 - i});
+    for (const Neighbour& n : std::as_const(list).owned(i)) {
+      if (!n.touching()) continue;
+      const auto before = memory.find({count - 1 - n.sphere, count - 1 - i});
       ASSERT_NE(before, memory.end());
-      EXPECT_EQ(list.history[p].shear.x(), -before->second);
-      EXPECT_EQ(list.history[p].rolling.y(), -before->second);
+      EXPECT_EQ(list.memory(n).shear[0], -before->second);
+      EXPECT_EQ(list.memory(n).rolling[1], -before->second);
       ++found;
     }
   EXPECT_EQ(found, memory.size());

@@ -86,11 +86,10 @@ TEST(World, LooksAtStepBoundariesDoNotChangeTheRun) {
 std::vector<std::vector<std::int64_t>> partners(const RrlinearWorld& world, std::int64_t without) {
   std::vector<std::vector<std::int64_t>> lists;
   const Spheres& s = world.spheres();
-  for (int i = 0; i < s.size(); ++i) {
+  for (int i = 0; i < s.movable; ++i) {
     if (s.id[i] == without) continue;
     auto& row = lists.emplace_back();
-    for (int p = world.pairs().begin(i); p < world.pairs().end(i); ++p)
-      row.push_back(s.id[world.pairs().partner(p)]);
+    for (const Neighbour& n : world.pairs().owned(i)) row.push_back(s.id[n.sphere]);
   }
   return lists;
 }

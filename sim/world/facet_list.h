@@ -1,0 +1,66 @@
+#pragma once
+// Facets that a sphere touches or soon may, cached like pairs, and the memory of its contacts with them.
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sim/world/mesh_contact.h"
+#include "sim/world/pair_list.h"
+#include "sim/world/rows.h"
+#include "sim/world/spheres.h"
+
+namespace scree {
+
+class FacetList {
+ public:
+  using Meshes = std::vector<std::unique_ptr<MeshBody>>;
+
+  /// Facets of tools are listed this much further out (m), and anew when one has moved by as much.
+  void set_tool_skin(double skin) { tool_skin_ = skin; }
+  double tool_skin() const { return tool_skin_; }
+
+  /// After spheres were re-sorted or added: contact memory follows; nothing is listed until list() is called.
+  /// Frees the contacts with meshes that are gone, and returns 1 for the spheres that had one.
+  std::vector<std::uint8_t> renumber(const std::vector<int>& order, const Spheres& spheres,
+                                     const Meshes& meshes);
+  /// Lists the facets near some spheres anew and, if `tools_moved`, those of moving meshes near all.
+  void list(std::span<const int> listed, bool tools_moved, const Spheres& spheres, const PairList& pairs,
+            const Meshes& meshes);
+  void list_all(const Spheres& spheres, const PairList& pairs, const Meshes& meshes);
+
+  bool any(int i) const { return slot_of_[i] >= 0; }
+  std::span<const FacetRef> facets(int i) const { return rows_.row(i); }
+  /// The contacts of a sphere that has facets; free slots have body -1.
+  std::span<MeshContact> slots(int i) {
+    return {slots_.data() + slot_of_[i], static_cast<std::size_t>(kMeshContactSlots)};
+  }
+  std::span<const MeshContact> slots(int i) const {
+    return {slots_.data() + slot_of_[i], static_cast<std::size_t>(kMeshContactSlots)};
+  }
+  int rows() const { return static_cast<int>(slot_of_.size()); }
+  /// Spheres that have facets of a mesh that moves (or will), rising.
+  std::vector<int> near_tools(const Meshes& meshes, double time) const;
+  /// Bytes held.
+  std::size_t bytes() const;
+
+ private:
+  void list_one(int i, bool anew, const Spheres& spheres, const PairList& pairs, const Meshes& meshes);
+  void find_boxes(bool tools_moved, const Meshes& meshes);
+  void set_slot(int i, bool needed);
+
+  struct Box {
+    int body;
+    bool moves;
+    Vec3 low, high;  // m, world
+  };
+  std::vector<Box> boxes_;
+  Rows<FacetRef> rows_;
+  std::vector<int> slot_of_;  // first slot of a sphere, or -1
+  std::vector<MeshContact> slots_;
+  std::vector<int> free_slots_;
+  double tool_skin_ = 0;
+  std::vector<FacetRef> row_;
+  std::vector<int> found_;
+};
+
+}  // namespace scree

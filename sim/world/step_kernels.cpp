@@ -1,0 +1,233 @@
+#include "sim/world/step_kernels.h"
+
+namespace scree {
+namespace {
+
+constexpr int kBatch = 192;  // contacts computed before their forces are added: they stay in the first cache
+
+// Closed contacts on their way through the law.
+struct Batch {
+  int count = 0;
+  int owner[kBatch + 3 * kLanes], partner[kBatch + 3 * kLanes];
+  std::uint32_t memory[kBatch + 3 * kLanes];
+  Quad force[kBatch + 3 * kLanes], torque1[kBatch + 3 * kLanes], torque2[kBatch + 3 * kLanes];
+};
+
+SCREE_INLINE LaneVec3 load4(const Quad* quads, const int* index, Lanes& companion) {
+  Lanes a = load(quads[index[0]]), b = load(quads[index[1]]), c = load(quads[index[2]]),
+        d = load(quads[index[3]]);
+  transpose(a, b, c, d);
+  companion = d;
+  return {a, b, c};
+}
+SCREE_INLINE void store4(Quad* quads, LaneVec3 v, Lanes companion) {
+  transpose(v.x_, v.y_, v.z_, companion);
+  store(quads[0], v.x_);
+  store(quads[1], v.y_);
+  store(quads[2], v.z_);
+  store(quads[3], companion);
+}
+
+static_assert(sizeof(ContactMemory) == 2 * sizeof(Quad));
+SCREE_INLINE Lanes load_half(const ContactMemory& m, int half) {
+  Lanes v;
+  __builtin_memcpy(&v, reinterpret_cast<const char*>(__builtin_assume_aligned(&m, 64)) + 32 * half, 32);
+  return v;
+}
+SCREE_INLINE void store_half(ContactMemory& m, int half, Lanes v) {
+  __builtin_memcpy(reinterpret_cast<char*>(__builtin_assume_aligned(&m, 64)) + 32 * half, &v, 32);
+}
+
+// The law for four contacts, from `at` on.
+SCREE_INLINE void four_contacts(const StepView& view, Batch& batch, int at, Lanes& overlap_ratio) {
+  const Spheres& s = view.spheres;
+  ContactMemory* memories = view.pairs.memories();
+  const int *first = batch.owner + at, *second = batch.partner + at;
+  Lanes r1, r2, m1, m2, unused;
+  const LaneVec3 x1 = load4(s.place.data(), first, r1), x2 = load4(s.place.data(), second, r2);
+  const LaneVec3 v1 = load4(s.velocity.data(), first, m1), v2 = load4(s.velocity.data(), second, m2);
+  const LaneVec3 w1 = load4(s.spin.data(), first, unused), w2 = load4(s.spin.data(), second, unused);
+
+  const Lanes zero{}, one = zero + 1.0;
+  const LaneVec3 apart = x2 - x1;
+  const Lanes distance = root(apart.squaredNorm()), per_distance = one / distance;
+  const LaneMask distinct = distance > zero;
+  BasicContactMotion<Lanes> motion;
+  motion.normal = {pick(distinct, apart.x_ * per_distance, zero),
+                   pick(distinct, apart.y_ * per_distance, zero),
+                   pick(distinct, apart.z_ * per_distance, one)};
+  motion.overlap = r1 + r2 - distance;
+  // The contact point halves the overlap. It may lie beyond the centre of a small sphere pressed into a
+  // block: the arms always add up to the distance, so angular momentum is kept.
+  const Lanes arm1 = r1 - 0.5 * motion.overlap, arm2 = r2 - 0.5 * motion.overlap;
+  motion.velocity = v2 - v1 - (arm1 * w1 + arm2 * w2).cross(motion.normal);
+  motion.spin = w2 - w1;
+  motion.twist = 0.5 * (w1 + w2).dot(motion.normal);
+  motion.dt = view.last_dt;
+  if (view.law.beta_n > 0 || view.law.beta_s > 0) {
+    for (int k = 0; k < kLanes; ++k)
+      if (second[k] >= s.movable) m2[k] = 1e300;
+    motion.reduced_mass = m1 / (one + m1 / m2);
+  } else {
+    motion.reduced_mass = zero;
+  }
+
+  ContactMemory *a = memories + batch.memory[at], *b = memories + batch.memory[at + 1],
+                *c = memories + batch.memory[at + 2], *d = memories + batch.memory[at + 3];
+  BasicContactHistory<Lanes> history;
+  Lanes sx = load_half(*a, 0), sy = load_half(*b, 0), sz = load_half(*c, 0), sw = load_half(*d, 0);
+  transpose(sx, sy, sz, sw);
+  Lanes mx = load_half(*a, 1), my = load_half(*b, 1), mz = load_half(*c, 1), mw = load_half(*d, 1);
+  transpose(mx, my, mz, mw);
+  history.shear = {sx, sy, sz};
+  history.rolling = {mx, my, mz};
+
+  const BasicContactForce<Lanes> f =
+      contact_step<Lanes>(view.law, ball_ball<Lanes>(view.law, r1, r2), motion, history);
+
+  sx = history.shear.x_, sy = history.shear.y_, sz = history.shear.z_;
+  transpose(sx, sy, sz, sw);
+  mx = history.rolling.x_, my = history.rolling.y_, mz = history.rolling.z_;
+  transpose(mx, my, mz, mw);
+  store_half(*a, 0, sx), store_half(*b, 0, sy), store_half(*c, 0, sz), store_half(*d, 0, sw);
+  store_half(*a, 1, mx), store_half(*b, 1, my), store_half(*c, 1, mz), store_half(*d, 1, mw);
+
+  const LaneVec3 lever = motion.normal.cross(f.force);
+  store4(batch.force + at, f.force, one);
+  store4(batch.torque1 + at, arm1 * lever + f.rolling, zero);
+  store4(batch.torque2 + at, arm2 * lever - f.rolling, zero);
+  overlap_ratio = larger(overlap_ratio, motion.overlap / smaller(r1, r2));
+}
+
+// Takes out contacts that rest: between sleepers, or of a sleeper with a fixed ball.
+SCREE_INLINE void drop_resting(const Spheres& s, Batch& batch) {
+  int kept = 0;
+  for (int k = 0; k < batch.count; ++k) {
+    const int i = batch.owner[k], j = batch.partner[k];
+    if (s.asleep[i] && (j >= s.movable || s.asleep[j])) continue;
+    batch.owner[kept] = i;
+    batch.partner[kept] = j;
+    batch.memory[kept++] = batch.memory[k];
+  }
+  batch.count = kept;
+}
+
+SCREE_INLINE void finish_batch(const StepView& view, Batch& batch, Lanes& overlap_ratio, BlockWork& work) {
+  const Spheres& s = view.spheres;
+  const bool sleepers = view.sleep.asleep() > 0;
+  if (sleepers) drop_resting(s, batch);
+  if (batch.count == 0) return;
+  for (int k = batch.count; k < batch.count + kLanes - 1; ++k) {
+    batch.owner[k] = batch.owner[batch.count - 1];
+    batch.partner[k] = batch.partner[batch.count - 1];
+    batch.memory[k] = batch.memory[batch.count - 1];
+  }
+  for (int k = 0; k < batch.count; k += kLanes) four_contacts(view, batch, k, overlap_ratio);
+
+  const int end = (work.block + 1) * kBlock;
+  const LaneMask sign_bits = {1L << 63, 1L << 63, 1L << 63, 0};
+  for (int k = 0; k < batch.count; ++k) {
+    const int i = batch.owner[k], j = batch.partner[k];
+    const Lanes force = load(batch.force[k]);
+    if (sleepers && s.asleep[i] != s.asleep[j] && j < s.movable) {
+      const int sleeper = s.asleep[i] ? i : j;
+      if (view.sleep.disturbs(view.pairs.memories()[batch.memory[k]], sleeper, batch.force[k].vec()))
+        work.disturbed.push_back(sleeper);
+    }
+    ForceSum& own = view.near[i];
+    store(own.force, load(own.force) + force);
+    store(own.torque, load(own.torque) + load(batch.torque1[k]));
+    if (j >= s.movable) continue;
+    const Lanes back = reinterpret_cast<Lanes>(reinterpret_cast<LaneMask>(force) ^ sign_bits);
+    if (j < end || !view.write_down) {
+      ForceSum& other = (j < end ? view.near : view.far)[j];
+      store(other.force, load(other.force) + back);
+      store(other.torque, load(other.torque) + load(batch.torque2[k]));
+    } else {
+      work.far_order.push_back(static_cast<std::uint64_t>(j / kBlock) << 32 | work.far_sphere.size());
+      work.far_sphere.push_back(j);
+      ForceSum& sum = work.far_sum.emplace_back();
+      store(sum.force, back);
+      store(sum.torque, load(batch.torque2[k]));
+    }
+  }
+  batch.count = 0;
+}
+
+}  // namespace
+
+SCREE_VECTORISED
+void contact_forces(const StepView& view, BlockWork& work) {
+  const Spheres& s = view.spheres;
+  const Quad* place = s.place.data();
+  Batch batch;
+  Lanes overlap_ratio{};
+  for (const int i : work.rows) {
+    const std::span<Neighbour> row = view.pairs.owned(i);
+    const int count = static_cast<int>(row.size());
+    const Lanes zero{}, xi = zero + place[i].x, yi = zero + place[i].y, zi = zero + place[i].z,
+                        ri = zero + place[i].w;
+    for (int k = 0; k < count; k += kLanes) {
+      const int lanes = count - k < kLanes ? count - k : kLanes;
+      int partner[kLanes];
+      for (int q = 0; q < kLanes; ++q) partner[q] = row[k + (q < lanes ? q : 0)].sphere;
+      Lanes rj;
+      const LaneVec3 xj = load4(place, partner, rj);
+      const LaneVec3 apart = xj - LaneVec3{xi, yi, zi};
+      const Lanes reach = ri + rj;
+      const LaneMask closed = apart.squaredNorm() < reach * reach;
+      for (int q = 0; q < lanes; ++q) {
+        Neighbour& entry = row[k + q];
+        const unsigned now = static_cast<unsigned>(closed[q]) & 1u;
+        batch.owner[batch.count] = i;
+        batch.partner[batch.count] = entry.sphere;
+        batch.memory[batch.count] = entry.tag >> 1;
+        batch.count += static_cast<int>(now);
+        if (now == (entry.tag & 1u)) continue;
+        entry.tag ^= 1u;
+        if (now) continue;
+        ContactMemory& memory = view.pairs.memory(entry);
+        memory.open();
+        const int j = entry.sphere;
+        if (j < s.movable && s.asleep[i] != s.asleep[j]) {
+          const int sleeper = s.asleep[i] ? i : j;
+          if (view.sleep.disturbs(memory, sleeper, Vec3::Zero())) work.disturbed.push_back(sleeper);
+        }
+      }
+      if (batch.count >= kBatch) finish_batch(view, batch, overlap_ratio, work);
+    }
+  }
+  finish_batch(view, batch, overlap_ratio, work);
+  for (int k = 0; k < kLanes; ++k)
+    if (overlap_ratio[k] > work.overlap_ratio) work.overlap_ratio = overlap_ratio[k];
+}
+
+SCREE_VECTORISED
+void leapfrog(const LeapfrogView& view, BlockWork& work) {
+  Spheres& s = view.spheres;
+  const Lanes zero{}, one = zero + 1.0, gravity = {view.gravity.x(), view.gravity.y(), view.gravity.z(), 0},
+                      dt = {view.dt, view.dt, view.dt, 0};
+  // f - alpha |f| sign(v); see locally_damped().
+  const auto damped = [&](Lanes f, Lanes v, Lanes alpha) __attribute__((always_inline)) {
+    const Lanes size = pick(f < zero, -f, f), sign = pick(v > zero, one, pick(v < zero, -one, zero));
+    return f - alpha * size * sign;
+  };
+  bool left = false;
+  for (const int i : work.awake) {
+    ForceSum &near = view.near[i], &far = view.far[i];
+    const Lanes force = load(far.force) + load(near.force), torque = load(far.torque) + load(near.torque);
+    store(near.force, zero), store(near.torque, zero), store(far.force, zero), store(far.torque, zero);
+    store(s.force[i], force);
+    Lanes v = load(s.velocity[i]), w = load(s.spin[i]), x = load(s.place[i]);
+    const Lanes alpha = zero + (view.damped_in_flight || force[3] > 0 ? view.alpha : 0.0);
+    const double mass = v[3], inertia = w[3];
+    v += dt / mass * damped(force + mass * gravity, v, alpha);
+    w += dt / inertia * damped(torque, w, alpha);
+    x += dt * v;
+    store(s.velocity[i], v), store(s.spin[i], w), store(s.place[i], x);
+    if (view.pairs.left_skin(i, s.place[i])) left = true;
+  }
+  work.left_skin = left;
+}
+
+}  // namespace scree

@@ -1,0 +1,69 @@
+#pragma once
+// The two loops in which nearly all of the time goes: forces of contacts between spheres, and leapfrog.
+//
+// Spheres are handled in blocks of kBlock neighbours in memory (and so in space). A block first finds the
+// closed contacts that its rows own, then computes them four at a time (lanes.h), then adds forces and
+// moments one contact after another in the order of the rows. What acts on a sphere is the sum of
+//   far:  contacts owned by spheres of earlier blocks, by rising owner, and
+//   near: contacts of its own block, by rising owner, then with meshes.
+// One thread adds far forces as it goes; several write them down block by block and add them afterwards.
+// Order and grouping are the same, so the sums are too, bit by bit.
+#include <span>
+#include <vector>
+
+#include "sim/contact/rrlinear.h"
+#include "sim/world/pair_list.h"
+#include "sim/world/sleep.h"
+#include "sim/world/spheres.h"
+
+namespace scree {
+
+inline constexpr int kBlock = 512;  ///< spheres a block
+
+/// Force (N; its companion counts contacts) and moment (N m) on a sphere.
+struct alignas(64) ForceSum {
+  Quad force, torque;
+};
+
+/// What one block works on and brings back.
+struct BlockWork {
+  int block = 0;                 ///< spheres block * kBlock and on
+  std::span<const int> rows;     ///< active rows of the block
+  std::span<const int> awake;    ///< spheres of the block that move
+  std::vector<int> disturbed;    ///< sleepers that one of its contacts wakes
+  double overlap_ratio = 0;      ///< largest overlap over the smaller radius
+  bool left_skin = false;        ///< a sphere may have left its skin
+  double step2 = 0, travel = 0;  ///< stable step squared (s2) and the step for the longest travel (s)
+  // Forces on spheres of later blocks, written down when several threads work, sorted by block.
+  std::vector<int> far_sphere;
+  std::vector<ForceSum> far_sum;
+  std::vector<std::uint64_t> far_order;  ///< block of the sphere << 32 | entry
+};
+
+struct StepView {
+  Spheres& spheres;
+  PairList& pairs;
+  const Sleep& sleep;
+  const ContactLaw& law;
+  double last_dt;        ///< s, the step that led to the present places
+  ForceSum *near, *far;  ///< sums by sphere; zero at the start of a step for all that move
+  bool write_down;       ///< far forces are written down instead of added
+};
+
+/// Forces of the contacts that the block's rows own.
+void contact_forces(const StepView& view, BlockWork& work);
+
+struct LeapfrogView {
+  Spheres& spheres;
+  const PairList& pairs;
+  ForceSum *near, *far;  ///< read and set back to zero
+  Vec3 gravity;          ///< m/s2
+  double alpha;          ///< local damping
+  bool damped_in_flight;
+  double dt;  ///< s
+};
+
+/// Moves the block's spheres by one step; sets work.left_skin.
+void leapfrog(const LeapfrogView& view, BlockWork& work);
+
+}  // namespace scree
