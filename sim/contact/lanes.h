@@ -24,6 +24,7 @@ namespace scree {
 inline constexpr int kLanes = 4;
 typedef double Lanes __attribute__((vector_size(32)));
 typedef long LaneMask __attribute__((vector_size(32)));
+typedef float LaneFloats __attribute__((vector_size(16)));
 
 // The same words for one double and for four.
 SCREE_INLINE double root(double a) {
@@ -106,6 +107,17 @@ SCREE_INLINE void store(Quad& q, Lanes v) {
   __builtin_memcpy(__builtin_assume_aligned(&q, sizeof(Quad)), &v, sizeof v);
 }
 /// Turns four quads into their x, y, z, w, or back.
+SCREE_INLINE void transpose(LaneFloats& a, LaneFloats& b, LaneFloats& c, LaneFloats& d) {
+  typedef int Index __attribute__((vector_size(16)));
+  const LaneFloats t0 = __builtin_shuffle(a, b, Index{0, 4, 1, 5}),
+                   t1 = __builtin_shuffle(a, b, Index{2, 6, 3, 7});
+  const LaneFloats t2 = __builtin_shuffle(c, d, Index{0, 4, 1, 5}),
+                   t3 = __builtin_shuffle(c, d, Index{2, 6, 3, 7});
+  a = __builtin_shuffle(t0, t2, Index{0, 1, 4, 5});
+  b = __builtin_shuffle(t0, t2, Index{2, 3, 6, 7});
+  c = __builtin_shuffle(t1, t3, Index{0, 1, 4, 5});
+  d = __builtin_shuffle(t1, t3, Index{2, 3, 6, 7});
+}
 SCREE_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
   const Lanes t0 = __builtin_shuffle(a, b, LaneMask{0, 4, 2, 6});
   const Lanes t1 = __builtin_shuffle(a, b, LaneMask{1, 5, 3, 7});

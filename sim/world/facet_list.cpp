@@ -1,7 +1,7 @@
 #include "sim/world/facet_list.h"
 
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 namespace scree {
 
@@ -15,10 +15,14 @@ std::vector<std::uint8_t> FacetList::renumber(const std::vector<int>& order, con
     const int old = order[i];
     if (old >= static_cast<int>(slot_of_.size()) || slot_of_[old] < 0) continue;
     slot_of[i] = static_cast<int>(slots.size());
-    for (int k = 0; k < kMeshContactSlots; ++k) {
-      slots.push_back(slots_[slot_of_[old] + k]);
-      MeshContact& contact = slots.back();
-      if (contact.body >= 0 && !meshes[contact.body]) contact.body = -1, bereft[i] = 1;
+    slots.resize(slots.size() + kMeshContactSlots);
+    int count = 0;
+    for (const MeshContact& contact : std::as_const(*this).slots(old)) {
+      if (contact.body < 0) break;
+      if (meshes[contact.body])
+        slots[slot_of[i] + count++] = contact;
+      else
+        bereft[i] = 1;
     }
   }
   slot_of_.swap(slot_of);
@@ -84,7 +88,8 @@ void FacetList::list_one(int i, bool anew, const Spheres& s, const PairList& pai
     const Vec3 local = mesh.state().pose.to_local(x);
     for (const int f : found_) {
       const Facet& facet = mesh.facets()[f];
-      if (std::abs((local - facet.a).dot(facet.normal)) < range) row_.push_back({box.body, f});
+      if (std::abs((local - facet.a).dot(facet.normal)) < range && facet.box_within(local, range))
+        row_.push_back({box.body, f});
     }
   }
   rows_.assign(i, row_);

@@ -18,7 +18,10 @@ MeshBody::MeshBody(TriangleMesh mesh, const Surface& surface, Motion motion)
     extent_ = std::max(extent_, v.norm());
   }
   for (const auto& t : mesh_.triangles) {
-    Facet f{mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], Vec3::Zero()};
+    Facet f{mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]],
+            Vec3::Zero(),         Vec3::Zero(),         Vec3::Zero()};
+    f.low = f.a.cwiseMin(f.b).cwiseMin(f.c);
+    f.high = f.a.cwiseMax(f.b).cwiseMax(f.c);
     f.normal = (f.b - f.a).cross(f.c - f.a).normalized();
     facets_.push_back(f);
   }

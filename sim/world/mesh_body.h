@@ -25,7 +25,14 @@ btTransform to_bullet(const Pose& pose);
 /// A triangle ready for the closest-point test, in the mesh's own frame.
 struct Facet {
   Vec3 a, b, c;
-  Vec3 normal;  ///< unit, outward
+  Vec3 normal;     ///< unit, outward
+  Vec3 low, high;  ///< its box
+
+  /// True if the box comes closer to a point than `range` along every axis.
+  bool box_within(const Vec3& point, double range) const {
+    return point.x() + range > low.x() && point.x() - range < high.x() && point.y() + range > low.y() &&
+           point.y() - range < high.y() && point.z() + range > low.z() && point.z() - range < high.z();
+  }
 };
 
 class MeshBody {

@@ -52,6 +52,10 @@ constexpr double kSamePlane =
 constexpr double kBornDeep = 0.5;  // of the radius: overlap of a contact whose sphere comes out of a solid
 constexpr double kPlaneTolerance = 1e-7;  // of the radius
 
+double square(double x) {
+  return x * x;
+}
+
 // A contact of the step before, mesh frame.
 struct Remembered {
   Vec3 normal;
@@ -64,7 +68,7 @@ void collect(const MeshBody& body, std::span<const FacetRef> facets, const Vec3&
   for (const FacetRef& ref : facets) {
     const Facet& f = body.facets()[ref.facet];
     const double height = (centre - f.a).dot(f.normal);
-    if (height >= radius) continue;
+    if (height >= radius || !f.box_within(centre, radius)) continue;
     // +1: the contact began in front of the face, -1: behind, 0: none remembered. Another wall of the same
     // mesh may have the same normal, or the opposite one, but not at this distance from the centre.
     double side = 0, nearest = kSamePlane * radius;
@@ -82,7 +86,7 @@ void collect(const MeshBody& body, std::span<const FacetRef> facets, const Vec3&
     const double aside2 =
         away.squaredNorm() -
         height * height;  // a foot on the rim, straight below the centre, is one of the face
-    if (closest.feature == Feature::face || aside2 <= std::pow(kPlaneTolerance * radius, 2)) {
+    if (closest.feature == Feature::face || aside2 <= square(kPlaneTolerance * radius)) {
       if (body.mesh().closed) {
         if (side <= 0 && (height < 0 || pressed_through)) continue;
         side = 1.0;
@@ -115,7 +119,14 @@ MeshContactChanges update_mesh_contacts(const std::vector<std::unique_ptr<MeshBo
                                         std::span<MeshContact> slots) {
   thread_local std::vector<Touch> touches, accepted;
   std::array<bool, kMeshContactSlots> goes_on{};
-  std::array<MeshContact, kMeshContactSlots> fresh;
+  int known = 0;  // contacts of the step before
+  while (known < static_cast<int>(slots.size()) && slots[known].body >= 0) ++known;
+  struct Fresh {
+    int body;
+    Vec3 normal;
+    double overlap, excess;
+  };
+  std::array<Fresh, kMeshContactSlots> fresh;
   MeshContactChanges changes;
   int fresh_count = 0;
 
@@ -127,21 +138,23 @@ MeshContactChanges update_mesh_contacts(const std::vector<std::unique_ptr<MeshBo
     const Pose& pose = body.state().pose;
     std::array<Remembered, kMeshContactSlots> remembered;
     std::size_t remembered_count = 0;
-    for (const MeshContact& slot : slots)
-      if (slot.body == b) {
-        remembered[remembered_count++] = {pose.rotation.conjugate() * slot.normal,
-                                          slot.overlap + slot.excess};
-      }
+    for (int k = 0; k < known; ++k)
+      if (slots[k].body == b)
+        remembered[remembered_count++] = {pose.rotation.conjugate() * slots[k].normal,
+                                          slots[k].overlap + slots[k].excess};
 
     touches.clear();
     accepted.clear();
     collect(body, facets.subspan(first, last - first), pose.to_local(centre), radius,
             std::span(remembered.data(), remembered_count), touches);
-    std::sort(touches.begin(), touches.end(), [](const Touch& a, const Touch& c) {
-      if (a.feature != c.feature) return a.feature < c.feature;
-      if (a.overlap != c.overlap) return a.overlap > c.overlap;
-      return a.facet < c.facet;
-    });
+    if (touches.size() > 1)
+      std::sort(touches.begin(), touches.end(), [](const Touch& a, const Touch& c) {
+        if (a.feature != c.feature) return a.feature < c.feature;
+        if (a.overlap != c.overlap) return a.overlap > c.overlap;
+        return a.facet < c.facet;
+      });
+    first = last;
+    if (touches.empty()) continue;
     for (const Touch& touch : touches)
       if (std::none_of(accepted.begin(), accepted.end(),
                        [&](const Touch& by) { return hidden(touch, by, radius); }))
@@ -151,7 +164,7 @@ MeshContactChanges update_mesh_contacts(const std::vector<std::unique_ptr<MeshBo
       const Vec3 normal = pose.rotation * touch.normal;
       int best = -1;
       double best_cosine = kSameContact;
-      for (int k = 0; k < static_cast<int>(slots.size()); ++k) {
+      for (int k = 0; k < known; ++k) {
         if (slots[k].body != b || goes_on[k]) continue;
         if (const double c = slots[k].normal.dot(normal); c > best_cosine) best = k, best_cosine = c;
       }
@@ -163,23 +176,25 @@ MeshContactChanges update_mesh_contacts(const std::vector<std::unique_ptr<MeshBo
       } else if (fresh_count < kMeshContactSlots) {
         const double excess = body.mesh().closed && touch.overlap > kBornDeep * radius ? touch.overlap : 0.0;
         if (excess > 0) ++changes.born_inside;
-        fresh[fresh_count++] = {b, normal, touch.overlap - excess, excess, {}};
+        fresh[fresh_count++] = {b, normal, touch.overlap - excess, excess};
       } else {
         ++changes.without_slot;
       }
     }
-    first = last;
   }
 
-  for (int k = 0; k < static_cast<int>(slots.size()); ++k)
-    if (!goes_on[k]) slots[k].body = -1;
-  int k = 0;
+  int count = 0;
+  for (int k = 0; k < known; ++k) {
+    if (!goes_on[k]) continue;
+    if (count != k) slots[count] = slots[k];
+    ++count;
+  }
+  for (int k = count; k < known; ++k) slots[k].body = -1;
   for (int m = 0; m < fresh_count; ++m) {
-    while (k < static_cast<int>(slots.size()) && slots[k].body >= 0) ++k;
-    if (k == static_cast<int>(slots.size()))
+    if (count == static_cast<int>(slots.size()))
       ++changes.without_slot;
     else
-      slots[k] = fresh[m];
+      slots[count++] = {fresh[m].body, fresh[m].normal, fresh[m].overlap, fresh[m].excess, {}};
   }
   return changes;
 }

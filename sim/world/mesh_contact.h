@@ -34,7 +34,8 @@ struct MeshContactChanges {
 };
 
 /// Finds the contacts of a sphere with the facets listed (sorted by body) and updates its slots: a contact
-/// that goes on keeps its memory, one that has ended is freed.
+/// that goes on keeps its memory, one that has ended is freed. Contacts come first in `slots`; the first with
+/// body -1 ends them.
 ///
 /// Priority is face, edge, vertex. An accepted contact with foot p and normal n hides every edge or vertex
 /// whose closest point lies in or behind the plane (p, n): so seams of coplanar triangles, and the neighbours

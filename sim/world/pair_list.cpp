@@ -37,6 +37,7 @@ void PairList::rebuild(const Spheres& s, const std::vector<int>& order, double h
   const Rows<Neighbour> old_rows = std::move(rows_);
   const std::vector<std::int32_t> old_below = std::move(below_);
   const std::vector<ContactMemory> old_memory = std::move(memory_);
+  const std::vector<RestForce> old_rest = std::move(rest_);
 
   double min_radius = std::numeric_limits<double>::max(), max_radius = 0;
   for (int i = 0; i < n; ++i) {
@@ -49,6 +50,8 @@ void PairList::rebuild(const Spheres& s, const std::vector<int>& order, double h
   below_.assign(s.movable, 0);
   memory_ = {};
   memory_.reserve(old_memory.size());
+  rest_ = {};
+  rest_.reserve(old_rest.size());
   free_memory_.clear();
   dropped_.clear();
   listed_.clear();
@@ -73,11 +76,13 @@ void PairList::rebuild(const Spheres& s, const std::vector<int>& order, double h
     const int at = place_in(row, other);
     if (at == static_cast<int>(row.size()) || row[at].sphere != other || !row[at].touching()) return;
     ContactMemory& memory = memory_[entry.memory()];
+    RestForce& rest = rest_[entry.memory()];
     memory = old_memory[row[at].memory()];
+    rest = old_rest[row[at].memory()];
     entry.tag |= 1u;
     if (a < b) return;
     for (int k = 0; k < 3; ++k) memory.shear[k] = -memory.shear[k], memory.rolling[k] = -memory.rolling[k];
-    memory.rest_x = -memory.rest_x, memory.rest_y = -memory.rest_y, memory.rest_z = -memory.rest_z;
+    rest.x = -rest.x, rest.y = -rest.y, rest.z = -rest.z;
   };
   for (std::size_t k = 0; k < listed_.size(); ++k) {
     const int i = listed_[k];
@@ -160,11 +165,13 @@ std::span<const int> PairList::found(std::size_t k) const {
 std::uint32_t PairList::new_memory() {
   if (free_memory_.empty()) {
     memory_.emplace_back();
+    rest_.emplace_back();
     return static_cast<std::uint32_t>(memory_.size() - 1);
   }
   const std::uint32_t id = free_memory_.back();
   free_memory_.pop_back();
   memory_[id] = {};
+  rest_[id] = {};
   return id;
 }
 
@@ -217,8 +224,8 @@ void PairList::clear_row(int i, int movable) {
 
 std::size_t PairList::bytes() const {
   return rows_.bytes() + below_.capacity() * sizeof(std::int32_t) +
-         memory_.capacity() * sizeof(ContactMemory) + free_memory_.capacity() * sizeof(std::uint32_t) +
-         grid_.bytes();
+         memory_.capacity() * sizeof(ContactMemory) + rest_.capacity() * sizeof(RestForce) +
+         free_memory_.capacity() * sizeof(std::uint32_t) + grid_.bytes();
 }
 
 }  // namespace scree

@@ -41,7 +41,6 @@ void RockWorld::add_spheres(const std::vector<NewSphere>& spheres) {
     spheres_.place.push_back({s.position.x(), s.position.y(), s.position.z(), radius});
     spheres_.velocity.push_back({s.velocity.x(), s.velocity.y(), s.velocity.z(), mass});
     spheres_.spin.push_back({s.spin.x(), s.spin.y(), s.spin.z(), 0.4 * mass * radius * radius});
-    spheres_.force.emplace_back();
     spheres_.id.push_back(id);
     spheres_.dump.push_back(s.dump);
     spheres_.lost.push_back(0);

@@ -39,11 +39,11 @@ std::unique_ptr<RockWorld> make_rrlinear_world(const WorldSettings& settings) {
   return std::make_unique<RrlinearWorld>(settings);
 }
 
-// Runs body(work) over the blocks.
+// Runs body(work) over the blocks; one thread goes from the last to the first.
 template <class Body>
 void RrlinearWorld::for_blocks(Body&& body) {
   if (!arena_) {
-    for (BlockWork& work : blocks_) body(work);
+    for (auto work = blocks_.rbegin(); work != blocks_.rend(); ++work) body(*work);
     return;
   }
   arena_->execute([&] {
@@ -81,7 +81,7 @@ void RrlinearWorld::advance_to(double end) {
       check_spheres();
       if (repair_due_) repair();
       const std::int64_t asleep = sleep_.asleep();
-      sleep_.look(spheres_, pairs_, watched_, law_, time_, settings_.gravity);
+      sleep_.look(spheres_, sum_, pairs_, watched_, law_, time_, settings_.gravity);
       if (sleep_.asleep() != asleep) blocks_due_ = true;
       dt_ = stable_step();
     }
@@ -104,8 +104,7 @@ void RrlinearWorld::prepare() {
   const int n = spheres_.movable;
   double smallest = std::numeric_limits<double>::max();
   for (const Quad& p : spheres_.place) smallest = std::min(smallest, p.w);
-  near_.assign(n, {});
-  far_.assign(n, {});
+  sum_.assign(n, {});
 
   pairs_.rebuild(spheres_, order, horizon());
   // A sphere that touched a mesh which was taken away has lost its hold.
@@ -151,7 +150,7 @@ void RrlinearWorld::repair() {
 void RrlinearWorld::wake(std::vector<int>& disturbed) {
   if (disturbed.empty() || !sleep_.wake(disturbed, spheres_, pairs_)) return;
   for (const int i : disturbed) {
-    near_[i] = far_[i] = {};  // what was added while it slept
+    sum_[i] = {};  // what was added while it slept
     if (settings_.fixed_time_step == 0)
       dt_ = std::min(dt_, settings_.time_step_safety * std::sqrt(own_step2(i)));
   }
@@ -181,8 +180,13 @@ void RrlinearWorld::split_into_blocks() {
 
 void RrlinearWorld::mesh_forces(BlockWork& work) {
   ContactLaw law = law_;
-  for (const int i : work.awake) {
-    if (!facets_.any(i)) continue;
+  work.near_meshes.clear();
+  for (const int i : work.awake)
+    if (facets_.any(i)) work.near_meshes.push_back(i);
+  constexpr std::size_t kAhead = 4;  // spheres whose contacts are on their way from memory
+  for (std::size_t k = 0; k < work.near_meshes.size(); ++k) {
+    if (k + kAhead < work.near_meshes.size()) facets_.fetch(work.near_meshes[k + kAhead]);
+    const int i = work.near_meshes[k];
     const Quad place = spheres_.place[i];
     const std::span<MeshContact> slots = facets_.slots(i);
     const MeshContactChanges changes =
@@ -193,7 +197,7 @@ void RrlinearWorld::mesh_forces(BlockWork& work) {
       __atomic_fetch_add(&statistics_.crowded_contacts, changes.without_slot, __ATOMIC_RELAXED);
     const Vec3 v = spheres_.velocity[i].vec(), w = spheres_.spin[i].vec();
     for (MeshContact& c : slots) {
-      if (c.body < 0) continue;
+      if (c.body < 0) break;
       const MeshBody& body = *meshes_[c.body];
       law.mu = body.surface().mu;
       law.mu_r = body.surface().mu_r;
@@ -209,9 +213,9 @@ void RrlinearWorld::mesh_forces(BlockWork& work) {
       motion.reduced_mass = spheres_.velocity[i].w;
       motion.dt = last_dt_;
       const ContactForce f = contact_step<double>(law, ball_facet(law, place.w), motion, c.history);
-      near_[i].force.add(f.force);
-      near_[i].force.w += 1;
-      near_[i].torque.add(arm * normal.cross(f.force) + f.rolling);
+      sum_[i].force.add(f.force);
+      sum_[i].force.w += 1;
+      sum_[i].torque.add(arm * normal.cross(f.force) + f.rolling);
       work.overlap_ratio = std::max(work.overlap_ratio, c.overlap / place.w);
     }
   }
@@ -219,7 +223,7 @@ void RrlinearWorld::mesh_forces(BlockWork& work) {
 
 void RrlinearWorld::forces() {
   if (blocks_due_) split_into_blocks();
-  const StepView view{spheres_, pairs_, sleep_, law_, last_dt_, near_.data(), far_.data(), several_threads()};
+  const StepView view{spheres_, pairs_, sleep_, law_, last_dt_, sum_.data(), several_threads()};
   for_blocks([&](BlockWork& work) {
     work.far_sphere.clear();
     work.far_sum.clear();
@@ -231,13 +235,13 @@ void RrlinearWorld::forces() {
   });
 }
 
-// Adds what the blocks wrote down for one another. For every block: by rising block that wrote, in its order.
+// Adds what the blocks wrote down for one another: for every block what the nearest earlier one wrote first.
 void RrlinearWorld::add_far_forces() {
-  for (const BlockWork& from : blocks_)
-    for (const std::uint64_t entry : from.far_order) {
+  for (auto from = blocks_.rbegin(); from != blocks_.rend(); ++from)
+    for (const std::uint64_t entry : from->far_order) {
       const auto k = static_cast<std::size_t>(entry & 0xffffffffu);
-      ForceSum& sum = far_[from.far_sphere[k]];
-      const ForceSum& more = from.far_sum[k];
+      ForceSum& sum = sum_[from->far_sphere[k]];
+      const ForceSum& more = from->far_sum[k];
       sum.force = {sum.force.x + more.force.x, sum.force.y + more.force.y, sum.force.z + more.force.z,
                    sum.force.w + more.force.w};
       sum.torque.add(more.torque.vec());
@@ -257,8 +261,7 @@ void RrlinearWorld::step(double dt) {
   if (several_threads()) add_far_forces();
   const LeapfrogView view{spheres_,
                           pairs_,
-                          near_.data(),
-                          far_.data(),
+                          sum_.data(),
                           settings_.gravity,
                           settings_.material.local_damping,
                           settings_.material.damping_reach == DampingReach::always,
@@ -302,7 +305,7 @@ double RrlinearWorld::own_step2(int i) const {
     const ContactStiffness wall = ball_facet(law_, a.w);
     int touching = 0;
     for (const MeshContact& c : facets_.slots(i)) {
-      if (c.body < 0) continue;
+      if (c.body < 0) break;
       add(wall, c.normal);
       ++touching;
     }
@@ -360,7 +363,7 @@ std::vector<MeshContact> RrlinearWorld::mesh_contacts(int index) const {
 
 std::size_t RrlinearWorld::bytes() const {
   std::size_t bytes = spheres_.bytes() + pairs_.bytes() + facets_.bytes() + sleep_.bytes() +
-                      (near_.capacity() + far_.capacity()) * sizeof(ForceSum);
+                      sum_.capacity() * sizeof(ForceSum);
   for (const BlockWork& work : blocks_) bytes += work.far_sum.capacity() * (sizeof(ForceSum) + 12);
   return bytes;
 }

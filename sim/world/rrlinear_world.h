@@ -72,8 +72,8 @@ class RrlinearWorld final : public RockWorld {
   FacetList facets_;
   Sleep sleep_;
   std::vector<std::uint8_t> watched_;  // near a tool that moves: does not sleep
-  std::vector<ForceSum> near_, far_;
-  std::vector<BlockWork> blocks_;  // those with anything to do
+  std::vector<ForceSum> sum_;          // by sphere; of awake ones, from the last step
+  std::vector<BlockWork> blocks_;      // those with anything to do
   std::vector<int> disturbed_;
   bool blocks_due_ = true;  // who is awake, or which rows are active, has changed
   std::unique_ptr<tbb::task_arena> arena_;

@@ -101,14 +101,13 @@ void Sleep::lose(int i, const Spheres& s) {
 // A contact that is open now has a rest force of nothing; that of a closed one is learnt at the next step.
 void Sleep::forget_rest(int i, const Spheres& s, PairList& pairs) {
   for (const Neighbour& n : pairs.neighbours(i)) {
-    ContactMemory& contact = pairs.memory(n);
-    contact.rest_x = contact.rest_y = contact.rest_z = 0;
-    contact.rest_known = overlap_of(s, i, n.sphere) > 0 ? 0 : 1;
+    pairs.rest(n.memory()) = {0, 0, 0, overlap_of(s, i, n.sphere) > 0 ? 0 : 1};
   }
 }
 
-void Sleep::look(Spheres& s, PairList& pairs, const std::vector<std::uint8_t>& stay_awake,
-                 const ContactLaw& law, double time, const Vec3& gravity) {
+void Sleep::look(Spheres& s, std::span<const ForceSum> sums, PairList& pairs,
+                 const std::vector<std::uint8_t>& stay_awake, const ContactLaw& law, double time,
+                 const Vec3& gravity) {
   if (!on_ || time < window_end_) return;
   window_end_ = time + window_;
   const double g = gravity.norm();
@@ -118,8 +117,8 @@ void Sleep::look(Spheres& s, PairList& pairs, const std::vector<std::uint8_t>& s
     const double radius = s.place[i].w, weight = s.velocity[i].w * g;
     const double travel = (x - window_start_[i]).norm();
     window_start_[i] = x;
-    const double pull = (s.force[i].vec() + s.velocity[i].w * gravity).norm();
-    const bool quiet = !stay_awake[i] && s.force[i].w > 0 && travel < kQuietTravel * radius &&
+    const double pull = (sums[i].force.vec() + s.velocity[i].w * gravity).norm();
+    const bool quiet = !stay_awake[i] && sums[i].force.w > 0 && travel < kQuietTravel * radius &&
                        pull < kQuietPull * weight &&
                        s.velocity[i].vec().norm() * window_ < 2.0 * kQuietTravel * radius;
     quiet_windows_[i] = quiet ? static_cast<std::uint8_t>(quiet_windows_[i] + 1) : std::uint8_t{0};

@@ -17,6 +17,11 @@
 
 namespace scree {
 
+/// Force (N; its companion counts contacts) and moment (N m) on a sphere.
+struct alignas(64) ForceSum {
+  Quad force, torque;
+};
+
 class Sleep {
  public:
   Sleep(bool on, double wake_tolerance) : on_(on), wake_tolerance_(wake_tolerance) {}
@@ -36,19 +41,16 @@ class Sleep {
   /// A sphere has left the model.
   void lose(int i, const Spheres& spheres);
 
-  /// At the end of a window puts quiet spheres to sleep. Spheres::force holds the contact forces of the last
-  /// step. `stay_awake[i]`: must not sleep.
-  void look(Spheres& spheres, PairList& pairs, const std::vector<std::uint8_t>& stay_awake,
-            const ContactLaw& law, double time, const Vec3& gravity);
+  /// At the end of a window puts quiet spheres to sleep. `sums` hold what acted on each in the last step.
+  /// `stay_awake[i]`: must not sleep.
+  void look(Spheres& spheres, std::span<const ForceSum> sums, PairList& pairs,
+            const std::vector<std::uint8_t>& stay_awake, const ContactLaw& law, double time,
+            const Vec3& gravity);
 
-  /// A closed contact of a sleeper with an awake sphere has this force now. True if it wakes the sleeper.
-  bool disturbs(ContactMemory& contact, int sleeper, const Vec3& force) const {
-    const Vec3 change = force - Vec3(contact.rest_x, contact.rest_y, contact.rest_z);
-    if (contact.rest_known != 0) return change.squaredNorm() > tolerance2_[sleeper];
-    contact.rest_known = 1;
-    contact.rest_x = static_cast<float>(force.x());
-    contact.rest_y = static_cast<float>(force.y());
-    contact.rest_z = static_cast<float>(force.z());
+  /// A contact of a sleeper with an awake sphere has this force now. True if it wakes the sleeper.
+  bool disturbs(RestForce& rest, int sleeper, const Vec3& force) const {
+    if (rest.known != 0) return (force - Vec3(rest.x, rest.y, rest.z)).squaredNorm() > tolerance2_[sleeper];
+    rest = {static_cast<float>(force.x()), static_cast<float>(force.y()), static_cast<float>(force.z()), 1};
     return false;
   }
   /// Wakes these (in any order, each as often as it likes); true if any was asleep.

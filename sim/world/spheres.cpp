@@ -54,7 +54,6 @@ std::vector<int> sort_spheres(Spheres& s, const std::vector<std::uint8_t>& fixed
   permute(s.place, order);
   permute(s.velocity, order);
   permute(s.spin, order);
-  permute(s.force, order);
   permute(s.id, order);
   permute(s.dump, order);
   permute(s.lost, order);

@@ -22,7 +22,6 @@ struct Spheres {
   std::vector<Quad> place;     ///< position m; w: radius m
   std::vector<Quad> velocity;  ///< m/s; w: mass kg
   std::vector<Quad> spin;      ///< rad/s; w: moment of inertia kg m2
-  std::vector<Quad> force;     ///< of all contacts in the last step, N; w: their number
   std::vector<std::int64_t> id;
   std::vector<std::int32_t> dump;
   std::vector<std::uint8_t> lost;    ///< has left the model; takes no part any more
@@ -31,7 +30,7 @@ struct Spheres {
 
   int size() const { return static_cast<int>(place.size()); }
   /// Bytes held.
-  std::size_t bytes() const { return place.capacity() * (4 * sizeof(Quad) + 14); }
+  std::size_t bytes() const { return place.capacity() * (3 * sizeof(Quad) + 14); }
 };
 
 /// Orders movable spheres along a Morton curve (lost ones last), fixed balls likewise behind them. Returns

@@ -3,7 +3,7 @@
 namespace scree {
 namespace {
 
-constexpr int kBatch = 192;  // contacts computed before their forces are added: they stay in the first cache
+constexpr int kBatch = 96;  // contacts computed before their forces are added: they stay in the first cache
 
 // Closed contacts on their way through the law.
 struct Batch {
@@ -28,14 +28,20 @@ SCREE_INLINE void store4(Quad* quads, LaneVec3 v, Lanes companion) {
   store(quads[3], companion);
 }
 
-static_assert(sizeof(ContactMemory) == 2 * sizeof(Quad));
-SCREE_INLINE Lanes load_half(const ContactMemory& m, int half) {
-  Lanes v;
-  __builtin_memcpy(&v, reinterpret_cast<const char*>(__builtin_assume_aligned(&m, 64)) + 32 * half, 32);
+static_assert(sizeof(ContactMemory) == 8 * sizeof(float));
+SCREE_INLINE LaneFloats load_half(const ContactMemory& m, int half) {
+  LaneFloats v;
+  __builtin_memcpy(&v, reinterpret_cast<const char*>(__builtin_assume_aligned(&m, 32)) + 16 * half, 16);
   return v;
 }
-SCREE_INLINE void store_half(ContactMemory& m, int half, Lanes v) {
-  __builtin_memcpy(reinterpret_cast<char*>(__builtin_assume_aligned(&m, 64)) + 32 * half, &v, 32);
+SCREE_INLINE void store_half(ContactMemory& m, int half, LaneFloats v) {
+  __builtin_memcpy(reinterpret_cast<char*>(__builtin_assume_aligned(&m, 32)) + 16 * half, &v, 16);
+}
+SCREE_INLINE Lanes wide(LaneFloats v) {
+  return __builtin_convertvector(v, Lanes);
+}
+SCREE_INLINE LaneFloats narrow(Lanes v) {
+  return __builtin_convertvector(v, LaneFloats);
 }
 
 // The law for four contacts, from `at` on.
@@ -75,22 +81,22 @@ SCREE_INLINE void four_contacts(const StepView& view, Batch& batch, int at, Lane
   ContactMemory *a = memories + batch.memory[at], *b = memories + batch.memory[at + 1],
                 *c = memories + batch.memory[at + 2], *d = memories + batch.memory[at + 3];
   BasicContactHistory<Lanes> history;
-  Lanes sx = load_half(*a, 0), sy = load_half(*b, 0), sz = load_half(*c, 0), sw = load_half(*d, 0);
-  transpose(sx, sy, sz, sw);
-  Lanes mx = load_half(*a, 1), my = load_half(*b, 1), mz = load_half(*c, 1), mw = load_half(*d, 1);
-  transpose(mx, my, mz, mw);
-  history.shear = {sx, sy, sz};
-  history.rolling = {mx, my, mz};
+  LaneFloats a0 = load_half(*a, 0), b0 = load_half(*b, 0), c0 = load_half(*c, 0), d0 = load_half(*d, 0);
+  LaneFloats a1 = load_half(*a, 1), b1 = load_half(*b, 1), c1 = load_half(*c, 1), d1 = load_half(*d, 1);
+  transpose(a0, b0, c0, d0);
+  transpose(a1, b1, c1, d1);
+  history.shear = {wide(a0), wide(b0), wide(c0)};
+  history.rolling = {wide(d0), wide(a1), wide(b1)};
 
   const BasicContactForce<Lanes> f =
       contact_step<Lanes>(view.law, ball_ball<Lanes>(view.law, r1, r2), motion, history);
 
-  sx = history.shear.x_, sy = history.shear.y_, sz = history.shear.z_;
-  transpose(sx, sy, sz, sw);
-  mx = history.rolling.x_, my = history.rolling.y_, mz = history.rolling.z_;
-  transpose(mx, my, mz, mw);
-  store_half(*a, 0, sx), store_half(*b, 0, sy), store_half(*c, 0, sz), store_half(*d, 0, sw);
-  store_half(*a, 1, mx), store_half(*b, 1, my), store_half(*c, 1, mz), store_half(*d, 1, mw);
+  a0 = narrow(history.shear.x_), b0 = narrow(history.shear.y_), c0 = narrow(history.shear.z_);
+  d0 = narrow(history.rolling.x_), a1 = narrow(history.rolling.y_), b1 = narrow(history.rolling.z_);
+  transpose(a0, b0, c0, d0);
+  transpose(a1, b1, c1, d1);
+  store_half(*a, 0, a0), store_half(*b, 0, b0), store_half(*c, 0, c0), store_half(*d, 0, d0);
+  store_half(*a, 1, a1), store_half(*b, 1, b1), store_half(*c, 1, c1), store_half(*d, 1, d1);
 
   const LaneVec3 lever = motion.normal.cross(f.force);
   store4(batch.force + at, f.force, one);
@@ -131,16 +137,16 @@ SCREE_INLINE void finish_batch(const StepView& view, Batch& batch, Lanes& overla
     const Lanes force = load(batch.force[k]);
     if (sleepers && s.asleep[i] != s.asleep[j] && j < s.movable) {
       const int sleeper = s.asleep[i] ? i : j;
-      if (view.sleep.disturbs(view.pairs.memories()[batch.memory[k]], sleeper, batch.force[k].vec()))
+      if (view.sleep.disturbs(view.pairs.rest(batch.memory[k]), sleeper, batch.force[k].vec()))
         work.disturbed.push_back(sleeper);
     }
-    ForceSum& own = view.near[i];
+    ForceSum& own = view.sum[i];
     store(own.force, load(own.force) + force);
     store(own.torque, load(own.torque) + load(batch.torque1[k]));
     if (j >= s.movable) continue;
     const Lanes back = reinterpret_cast<Lanes>(reinterpret_cast<LaneMask>(force) ^ sign_bits);
     if (j < end || !view.write_down) {
-      ForceSum& other = (j < end ? view.near : view.far)[j];
+      ForceSum& other = view.sum[j];
       store(other.force, load(other.force) + back);
       store(other.torque, load(other.torque) + load(batch.torque2[k]));
     } else {
@@ -162,6 +168,7 @@ void contact_forces(const StepView& view, BlockWork& work) {
   const Quad* place = s.place.data();
   Batch batch;
   Lanes overlap_ratio{};
+  for (const int i : work.awake) store(view.sum[i].force, Lanes{}), store(view.sum[i].torque, Lanes{});
   for (const int i : work.rows) {
     const std::span<Neighbour> row = view.pairs.owned(i);
     const int count = static_cast<int>(row.size());
@@ -186,12 +193,12 @@ void contact_forces(const StepView& view, BlockWork& work) {
         if (now == (entry.tag & 1u)) continue;
         entry.tag ^= 1u;
         if (now) continue;
-        ContactMemory& memory = view.pairs.memory(entry);
-        memory.open();
+        view.pairs.memory(entry) = {};
         const int j = entry.sphere;
         if (j < s.movable && s.asleep[i] != s.asleep[j]) {
           const int sleeper = s.asleep[i] ? i : j;
-          if (view.sleep.disturbs(memory, sleeper, Vec3::Zero())) work.disturbed.push_back(sleeper);
+          if (view.sleep.disturbs(view.pairs.rest(entry.memory()), sleeper, Vec3::Zero()))
+            work.disturbed.push_back(sleeper);
         }
       }
       if (batch.count >= kBatch) finish_batch(view, batch, overlap_ratio, work);
@@ -214,10 +221,7 @@ void leapfrog(const LeapfrogView& view, BlockWork& work) {
   };
   bool left = false;
   for (const int i : work.awake) {
-    ForceSum &near = view.near[i], &far = view.far[i];
-    const Lanes force = load(far.force) + load(near.force), torque = load(far.torque) + load(near.torque);
-    store(near.force, zero), store(near.torque, zero), store(far.force, zero), store(far.torque, zero);
-    store(s.force[i], force);
+    const Lanes force = load(view.sum[i].force), torque = load(view.sum[i].torque);
     Lanes v = load(s.velocity[i]), w = load(s.spin[i]), x = load(s.place[i]);
     const Lanes alpha = zero + (view.damped_in_flight || force[3] > 0 ? view.alpha : 0.0);
     const double mass = v[3], inertia = w[3];

@@ -20,16 +20,12 @@ namespace scree {
 
 inline constexpr int kBlock = 512;  ///< spheres a block
 
-/// Force (N; its companion counts contacts) and moment (N m) on a sphere.
-struct alignas(64) ForceSum {
-  Quad force, torque;
-};
-
 /// What one block works on and brings back.
 struct BlockWork {
   int block = 0;                 ///< spheres block * kBlock and on
   std::span<const int> rows;     ///< active rows of the block
   std::span<const int> awake;    ///< spheres of the block that move
+  std::vector<int> near_meshes;  ///< awake spheres of the block that have facets
   std::vector<int> disturbed;    ///< sleepers that one of its contacts wakes
   double overlap_ratio = 0;      ///< largest overlap over the smaller radius
   bool left_skin = false;        ///< a sphere may have left its skin
@@ -45,20 +41,21 @@ struct StepView {
   PairList& pairs;
   const Sleep& sleep;
   const ContactLaw& law;
-  double last_dt;        ///< s, the step that led to the present places
-  ForceSum *near, *far;  ///< sums by sphere; zero at the start of a step for all that move
-  bool write_down;       ///< far forces are written down instead of added
+  double last_dt;   ///< s, the step that led to the present places
+  ForceSum* sum;    ///< by sphere
+  bool write_down;  ///< forces that cross a border are written down instead of added
 };
 
-/// Forces of the contacts that the block's rows own.
+/// Forces of the contacts that the block's rows own; the sums of the block's awake spheres begin here, from
+/// zero.
 void contact_forces(const StepView& view, BlockWork& work);
 
 struct LeapfrogView {
   Spheres& spheres;
   const PairList& pairs;
-  ForceSum *near, *far;  ///< read and set back to zero
-  Vec3 gravity;          ///< m/s2
-  double alpha;          ///< local damping
+  const ForceSum* sum;  ///< by sphere
+  Vec3 gravity;         ///< m/s2
+  double alpha;         ///< local damping
   bool damped_in_flight;
   double dt;  ///< s
 };

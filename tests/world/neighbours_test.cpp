@@ -32,7 +32,6 @@ Spheres random_spheres(int count, int fixed, std::uint64_t seed) {
     velocity.w = radius * radius * radius;
     s.velocity.push_back(velocity);
     s.spin.emplace_back();
-    s.force.emplace_back();
     s.id.push_back(i);
     s.dump.push_back(1);
     s.lost.push_back(0);
@@ -87,12 +86,12 @@ std::map<Pair, double> touch(PairList& list, const Spheres& s, double& next) {
       ContactMemory& contact = list.memory(n);
       if (gap(s, i, n.sphere) >= 0) {
         n.tag &= ~1u;
-        contact.open();
+        contact = {};
         continue;
       }
       if (!n.touching()) {
         n.tag |= 1u;
-        contact.shear[0] = contact.rolling[1] = next;
+        contact.shear[0] = contact.rolling[1] = static_cast<float>(next);
         next += 1;
       }
       memory[{i, n.sphere}] = contact.shear[0];
