@@ -136,32 +136,35 @@ MeshContactChanges update_mesh_contacts(const std::vector<std::unique_ptr<MeshBo
     while (last < facets.size() && facets[last].body == b) ++last;
     const MeshBody& body = *bodies[b];
     const Pose& pose = body.state().pose;
+    const bool turned = pose.rotation.w() != 1.0;  // most bodies are not
     std::array<Remembered, kMeshContactSlots> remembered;
     std::size_t remembered_count = 0;
     for (int k = 0; k < known; ++k)
       if (slots[k].body == b)
-        remembered[remembered_count++] = {pose.rotation.conjugate() * slots[k].normal,
-                                          slots[k].overlap + slots[k].excess};
+        remembered[remembered_count++] = {
+            turned ? Vec3(pose.rotation.conjugate() * slots[k].normal) : slots[k].normal,
+            slots[k].overlap + slots[k].excess};
 
     touches.clear();
     accepted.clear();
-    collect(body, facets.subspan(first, last - first), pose.to_local(centre), radius,
+    collect(body, facets.subspan(first, last - first),
+            turned ? pose.to_local(centre) : Vec3(centre - pose.position), radius,
             std::span(remembered.data(), remembered_count), touches);
+    first = last;
+    if (touches.empty()) continue;
     if (touches.size() > 1)
       std::sort(touches.begin(), touches.end(), [](const Touch& a, const Touch& c) {
         if (a.feature != c.feature) return a.feature < c.feature;
         if (a.overlap != c.overlap) return a.overlap > c.overlap;
         return a.facet < c.facet;
       });
-    first = last;
-    if (touches.empty()) continue;
     for (const Touch& touch : touches)
       if (std::none_of(accepted.begin(), accepted.end(),
                        [&](const Touch& by) { return hidden(touch, by, radius); }))
         accepted.push_back(touch);
 
     for (const Touch& touch : accepted) {
-      const Vec3 normal = pose.rotation * touch.normal;
+      const Vec3 normal = turned ? Vec3(pose.rotation * touch.normal) : touch.normal;
       int best = -1;
       double best_cosine = kSameContact;
       for (int k = 0; k < known; ++k) {
