@@ -138,21 +138,16 @@ void PairList::find_neighbours(int i, std::vector<int>& found) const {
 void PairList::find_neighbours(const std::vector<int>& spheres) {
   const int count = static_cast<int>(spheres.size()), parts = (count + kPart - 1) / kPart;
   if (static_cast<int>(parts_.size()) < parts) parts_.resize(parts);
-  const auto search = [&](int first, int last) {
-    for (int p = first; p < last; ++p) {
-      Part& part = parts_[p];
-      part.found.clear();
-      part.ends.clear();
-      for (int k = p * kPart; k < std::min(count, (p + 1) * kPart); ++k) {
-        find_neighbours(spheres[k], part.found);
-        part.ends.push_back(static_cast<int>(part.found.size()));
-      }
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (threads_ > 1 && parts > 1)
+  for (int p = 0; p < parts; ++p) {
+    Part& part = parts_[p];
+    part.found.clear();
+    part.ends.clear();
+    for (int k = p * kPart; k < std::min(count, (p + 1) * kPart); ++k) {
+      find_neighbours(spheres[k], part.found);
+      part.ends.push_back(static_cast<int>(part.found.size()));
     }
-  };
-  if (for_ranges_ && parts > 1)
-    for_ranges_(parts, search);
-  else
-    search(0, parts);
+  }
 }
 
 std::span<const int> PairList::found(std::size_t k) const {

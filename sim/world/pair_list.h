@@ -10,7 +10,6 @@
 // Row i holds all neighbours of movable sphere i, rising; those above i are the pairs that it owns. Both rows
 // of a pair name the same contact memory. Fixed balls have no rows.
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -50,10 +49,8 @@ struct Neighbour {
 
 class PairList {
  public:
-  /// Runs a body over parts of [0, count), in any order and on any thread.
-  using ForRanges = std::function<void(int count, const std::function<void(int first, int last)>& body)>;
   /// Lets several threads look for pairs; what is found does not depend on it.
-  void use_threads(ForRanges for_ranges) { for_ranges_ = std::move(for_ranges); }
+  void set_threads(int threads) { threads_ = threads; }
 
   /// Lists everything from scratch after spheres were added or re-sorted. `order[k]` is the old index of new
   /// sphere k, or -1 for a new one; memory of closed contacts is carried over.
@@ -109,7 +106,7 @@ class PairList {
   std::vector<std::uint32_t> free_memory_;
   std::vector<int> listed_, dropped_;
   std::int64_t listings_ = 0;
-  ForRanges for_ranges_;
+  int threads_ = 1;
 
   // What a search found, part by part: neighbours of the spheres of a part, one list after another.
   struct Part {

@@ -1,8 +1,5 @@
 #include "sim/world/rrlinear_world.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,14 +22,7 @@ constexpr double kLargestStep = 0.05;  // s; for scenes with nothing stiff in th
 
 RrlinearWorld::RrlinearWorld(const WorldSettings& settings)
     : RockWorld(settings), law_(settings.material), sleep_(settings.sleep, settings.wake_tolerance) {
-  if (!several_threads()) return;
-  arena_ = std::make_unique<tbb::task_arena>(settings_.threads);
-  pairs_.use_threads([this](int count, const std::function<void(int, int)>& body) {
-    arena_->execute([&] {
-      tbb::parallel_for(tbb::blocked_range<int>(0, count),
-                        [&](const tbb::blocked_range<int>& r) { body(r.begin(), r.end()); });
-    });
-  });
+  pairs_.set_threads(settings_.threads);
 }
 
 std::unique_ptr<RockWorld> make_rrlinear_world(const WorldSettings& settings) {
@@ -42,16 +32,10 @@ std::unique_ptr<RockWorld> make_rrlinear_world(const WorldSettings& settings) {
 // Runs body(work) over the blocks; one thread goes from the last to the first.
 template <class Body>
 void RrlinearWorld::for_blocks(Body&& body) {
-  if (!arena_) {
-    for (auto work = blocks_.rbegin(); work != blocks_.rend(); ++work) body(*work);
-    return;
-  }
-  arena_->execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks_.size(), 1),
-                      [&](const tbb::blocked_range<std::size_t>& r) {
-                        for (std::size_t k = r.begin(); k < r.end(); ++k) body(blocks_[k]);
-                      });
-  });
+  const int last = static_cast<int>(blocks_.size()) - 1;
+#pragma omp parallel for schedule(dynamic, 1) \
+    num_threads(settings_.threads) if (several_threads() && last > 0)
+  for (int k = 0; k <= last; ++k) body(blocks_[last - k]);
 }
 
 double RrlinearWorld::horizon() const {
@@ -161,6 +145,7 @@ void RrlinearWorld::wake(std::vector<int>& disturbed) {
 void RrlinearWorld::split_into_blocks() {
   blocks_due_ = false;
   const std::span<const int> rows = sleep_.active_rows(), awake = sleep_.awake();
+  block_at_.assign(spheres_.movable / kBlock + 1, -1);
   std::size_t r = 0, a = 0, count = 0;
   while (r < rows.size() || a < awake.size()) {
     int block = std::numeric_limits<int>::max();
@@ -172,6 +157,7 @@ void RrlinearWorld::split_into_blocks() {
     while (r < rows.size() && rows[r] / kBlock == block) ++r;
     while (a < awake.size() && awake[a] / kBlock == block) ++a;
     work.block = block;
+    block_at_[block] = static_cast<int>(count) - 1;
     work.rows = rows.subspan(first_row, r - first_row);
     work.awake = awake.subspan(first_awake, a - first_awake);
   }
@@ -225,27 +211,16 @@ void RrlinearWorld::forces() {
   if (blocks_due_) split_into_blocks();
   const StepView view{spheres_, pairs_, sleep_, law_, last_dt_, sum_.data(), several_threads()};
   for_blocks([&](BlockWork& work) {
-    work.far_sphere.clear();
-    work.far_sum.clear();
-    work.far_order.clear();
+    work.far.clear();
     work.disturbed.clear();
     contact_forces(view, work);
     mesh_forces(work);
-    std::sort(work.far_order.begin(), work.far_order.end());
   });
-}
-
-// Adds what the blocks wrote down for one another: for every block what the nearest earlier one wrote first.
-void RrlinearWorld::add_far_forces() {
+  if (!several_threads()) return;
+  for (BlockWork& work : blocks_) work.inbox.clear();
   for (auto from = blocks_.rbegin(); from != blocks_.rend(); ++from)
-    for (const std::uint64_t entry : from->far_order) {
-      const auto k = static_cast<std::size_t>(entry & 0xffffffffu);
-      ForceSum& sum = sum_[from->far_sphere[k]];
-      const ForceSum& more = from->far_sum[k];
-      sum.force = {sum.force.x + more.force.x, sum.force.y + more.force.y, sum.force.z + more.force.z,
-                   sum.force.w + more.force.w};
-      sum.torque.add(more.torque.vec());
-    }
+    for (const FarForces& far : from->far)
+      if (const int at = block_at_[far.block]; at >= 0) blocks_[at].inbox.push_back(&far);
 }
 
 void RrlinearWorld::move_tools() {
@@ -258,7 +233,6 @@ void RrlinearWorld::move_tools() {
 
 void RrlinearWorld::step(double dt) {
   forces();
-  if (several_threads()) add_far_forces();
   const LeapfrogView view{spheres_,
                           pairs_,
                           sum_.data(),
@@ -364,7 +338,8 @@ std::vector<MeshContact> RrlinearWorld::mesh_contacts(int index) const {
 std::size_t RrlinearWorld::bytes() const {
   std::size_t bytes = spheres_.bytes() + pairs_.bytes() + facets_.bytes() + sleep_.bytes() +
                       sum_.capacity() * sizeof(ForceSum);
-  for (const BlockWork& work : blocks_) bytes += work.far_sum.capacity() * (sizeof(ForceSum) + 12);
+  for (const BlockWork& work : blocks_)
+    for (const FarForces& far : work.far) bytes += far.entries.capacity() * sizeof(FarForces::Entry);
   return bytes;
 }
 

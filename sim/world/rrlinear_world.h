@@ -14,8 +14,6 @@
 //
 // Sums over contacts run in a fixed order (step_kernels.h), so results are bitwise the same for any number of
 // threads.
-#include <tbb/task_arena.h>
-
 #include "sim/contact/rrlinear.h"
 #include "sim/world/facet_list.h"
 #include "sim/world/pair_list.h"
@@ -49,7 +47,6 @@ class RrlinearWorld final : public RockWorld {
   void step(double dt);
   void split_into_blocks();
   void forces();
-  void add_far_forces();
   void mesh_forces(BlockWork& work);
   void move_tools();
   void repair();
@@ -74,9 +71,9 @@ class RrlinearWorld final : public RockWorld {
   std::vector<std::uint8_t> watched_;  // near a tool that moves: does not sleep
   std::vector<ForceSum> sum_;          // by sphere; of awake ones, from the last step
   std::vector<BlockWork> blocks_;      // those with anything to do
+  std::vector<int> block_at_;          // by block: its place in blocks_, or -1
   std::vector<int> disturbed_;
   bool blocks_due_ = true;  // who is awake, or which rows are active, has changed
-  std::unique_ptr<tbb::task_arena> arena_;
 };
 
 }  // namespace scree

@@ -150,11 +150,11 @@ SCREE_INLINE void finish_batch(const StepView& view, Batch& batch, Lanes& overla
       store(other.force, load(other.force) + back);
       store(other.torque, load(other.torque) + load(batch.torque2[k]));
     } else {
-      work.far_order.push_back(static_cast<std::uint64_t>(j / kBlock) << 32 | work.far_sphere.size());
-      work.far_sphere.push_back(j);
-      ForceSum& sum = work.far_sum.emplace_back();
-      store(sum.force, back);
-      store(sum.torque, load(batch.torque2[k]));
+      const int block = j / kBlock;
+      std::size_t at = 0;
+      while (at < work.far.size() && work.far[at].block != block) ++at;
+      if (at == work.far.size()) work.far.push_back({block, {}});
+      work.far[at].entries.push_back({back, load(batch.torque2[k]), j});
     }
   }
   batch.count = 0;
@@ -219,6 +219,12 @@ void leapfrog(const LeapfrogView& view, BlockWork& work) {
     const Lanes size = pick(f < zero, -f, f), sign = pick(v > zero, one, pick(v < zero, -one, zero));
     return f - alpha * size * sign;
   };
+  for (const FarForces* far : work.inbox)
+    for (const FarForces::Entry& entry : far->entries) {
+      ForceSum& sum = view.sum[entry.sphere];
+      store(sum.force, load(sum.force) + entry.force);
+      store(sum.torque, load(sum.torque) + entry.torque);
+    }
   bool left = false;
   for (const int i : work.awake) {
     const Lanes force = load(view.sum[i].force), torque = load(view.sum[i].torque);

@@ -20,6 +20,16 @@ namespace scree {
 
 inline constexpr int kBlock = 512;  ///< spheres a block
 
+/// Forces that one block's contacts exert on spheres of a later block, in the order of the contacts.
+struct FarForces {
+  int block;  ///< the later one
+  struct alignas(64) Entry {
+    Lanes force, torque;
+    int sphere;
+  };
+  std::vector<Entry> entries;
+};
+
 /// What one block works on and brings back.
 struct BlockWork {
   int block = 0;                 ///< spheres block * kBlock and on
@@ -30,10 +40,9 @@ struct BlockWork {
   double overlap_ratio = 0;      ///< largest overlap over the smaller radius
   bool left_skin = false;        ///< a sphere may have left its skin
   double step2 = 0, travel = 0;  ///< stable step squared (s2) and the step for the longest travel (s)
-  // Forces on spheres of later blocks, written down when several threads work, sorted by block.
-  std::vector<int> far_sphere;
-  std::vector<ForceSum> far_sum;
-  std::vector<std::uint64_t> far_order;  ///< block of the sphere << 32 | entry
+  std::vector<FarForces> far;    ///< written down for later blocks (several threads)
+  std::vector<const FarForces*>
+      inbox;  ///< what earlier blocks wrote down for this one, in the order of adding
 };
 
 struct StepView {
@@ -53,9 +62,9 @@ void contact_forces(const StepView& view, BlockWork& work);
 struct LeapfrogView {
   Spheres& spheres;
   const PairList& pairs;
-  const ForceSum* sum;  ///< by sphere
-  Vec3 gravity;         ///< m/s2
-  double alpha;         ///< local damping
+  ForceSum* sum;  ///< by sphere; what was written down is added first
+  Vec3 gravity;   ///< m/s2
+  double alpha;   ///< local damping
   bool damped_in_flight;
   double dt;  ///< s
 };
