@@ -41,6 +41,19 @@ SCREE_INLINE double pick(bool which, double yes, double no) {
 SCREE_INLINE Lanes pick(LaneMask which, Lanes yes, Lanes no) {
   return which ? yes : no;
 }
+/// Bit k: lane k is negative.
+SCREE_INLINE unsigned signs(Lanes a) {
+#if defined(__SSE2__)
+  typedef double Half __attribute__((vector_size(16)));
+  Half low, high;
+  __builtin_memcpy(&low, &a, sizeof low);
+  __builtin_memcpy(&high, reinterpret_cast<const char*>(&a) + sizeof low, sizeof high);
+  return static_cast<unsigned>(__builtin_ia32_movmskpd(low)) |
+         static_cast<unsigned>(__builtin_ia32_movmskpd(high)) << 2;
+#else
+  return (a[0] < 0 ? 1u : 0u) | (a[1] < 0 ? 2u : 0u) | (a[2] < 0 ? 4u : 0u) | (a[3] < 0 ? 8u : 0u);
+#endif
+}
 template <class Real>
 SCREE_INLINE Real smaller(Real a, Real b) {
   return pick(b < a, b, a);

@@ -41,8 +41,8 @@ struct RestForce {
 
 /// An entry of a row.
 struct Neighbour {
-  std::int32_t sphere;
-  std::uint32_t tag;  ///< memory << 1; the lowest bit, in the owner's row only: the contact is closed
+  std::int32_t sphere = 0;
+  std::uint32_t tag = 0;  ///< memory << 1; the lowest bit, in the owner's row only: the contact is closed
   std::uint32_t memory() const { return tag >> 1; }
   bool touching() const { return (tag & 1u) != 0; }
 };

@@ -1,5 +1,7 @@
 #include "sim/world/step_kernels.h"
 
+#include <bit>
+
 namespace scree {
 namespace {
 
@@ -160,6 +162,22 @@ SCREE_INLINE void finish_batch(const StepView& view, Batch& batch, Lanes& overla
   batch.count = 0;
 }
 
+// Contacts that have closed or opened since the last step; bit k is entry k.
+void close_or_open(const StepView& view, BlockWork& work, int i, Neighbour* entries, unsigned changed) {
+  const Spheres& s = view.spheres;
+  for (; changed != 0; changed &= changed - 1) {
+    Neighbour& entry = entries[std::countr_zero(changed)];
+    entry.tag ^= 1u;
+    if (entry.touching()) continue;
+    view.pairs.memory(entry) = {};
+    const int j = entry.sphere;
+    if (j >= s.movable || s.asleep[i] == s.asleep[j]) continue;
+    const int sleeper = s.asleep[i] ? i : j;
+    if (view.sleep.disturbs(view.pairs.rest(entry.memory()), sleeper, Vec3::Zero()))
+      work.disturbed.push_back(sleeper);
+  }
+}
+
 }  // namespace
 
 SCREE_VECTORISED
@@ -175,32 +193,24 @@ void contact_forces(const StepView& view, BlockWork& work) {
     const Lanes zero{}, xi = zero + place[i].x, yi = zero + place[i].y, zi = zero + place[i].z,
                         ri = zero + place[i].w;
     for (int k = 0; k < count; k += kLanes) {
-      const int lanes = count - k < kLanes ? count - k : kLanes;
-      int partner[kLanes];
-      for (int q = 0; q < kLanes; ++q) partner[q] = row[k + (q < lanes ? q : 0)].sphere;
+      // Lanes behind the row's end look at what lies there (Rows::kBehind) and are masked.
+      Neighbour* const entry = row.data() + k;
+      const int partner[kLanes] = {entry[0].sphere, entry[1].sphere, entry[2].sphere, entry[3].sphere};
+      const unsigned tag[kLanes] = {entry[0].tag, entry[1].tag, entry[2].tag, entry[3].tag};
       Lanes rj;
-      const LaneVec3 xj = load4(place, partner, rj);
-      const LaneVec3 apart = xj - LaneVec3{xi, yi, zi};
+      const LaneVec3 apart = load4(place, partner, rj) - LaneVec3{xi, yi, zi};
       const Lanes reach = ri + rj;
-      const LaneMask closed = apart.squaredNorm() < reach * reach;
-      for (int q = 0; q < lanes; ++q) {
-        Neighbour& entry = row[k + q];
-        const unsigned now = static_cast<unsigned>(closed[q]) & 1u;
+      const unsigned lanes = count - k < kLanes ? (1u << (count - k)) - 1u : 0xfu;
+      const unsigned closed = signs(apart.squaredNorm() - reach * reach) & lanes;
+      for (int q = 0; q < kLanes; ++q) {
         batch.owner[batch.count] = i;
-        batch.partner[batch.count] = entry.sphere;
-        batch.memory[batch.count] = entry.tag >> 1;
-        batch.count += static_cast<int>(now);
-        if (now == (entry.tag & 1u)) continue;
-        entry.tag ^= 1u;
-        if (now) continue;
-        view.pairs.memory(entry) = {};
-        const int j = entry.sphere;
-        if (j < s.movable && s.asleep[i] != s.asleep[j]) {
-          const int sleeper = s.asleep[i] ? i : j;
-          if (view.sleep.disturbs(view.pairs.rest(entry.memory()), sleeper, Vec3::Zero()))
-            work.disturbed.push_back(sleeper);
-        }
+        batch.partner[batch.count] = partner[q];
+        batch.memory[batch.count] = tag[q] >> 1;
+        batch.count += static_cast<int>(closed >> q & 1u);
       }
+      const unsigned before =
+          ((tag[0] & 1u) | (tag[1] & 1u) << 1 | (tag[2] & 1u) << 2 | (tag[3] & 1u) << 3) & lanes;
+      if (closed != before) close_or_open(view, work, i, entry, closed ^ before);
       if (batch.count >= kBatch) finish_batch(view, batch, overlap_ratio, work);
     }
   }
