@@ -10,22 +10,22 @@ std::vector<std::uint8_t> FacetList::renumber(const std::vector<int>& order, con
   const int n = s.movable;
   std::vector<std::uint8_t> bereft(s.size(), 0);
   std::vector<int> slot_of(n, -1);
-  std::vector<MeshContact> slots;
+  std::vector<std::uint8_t> closed(n, 0);
+  std::vector<Slots> slots(1);
   for (int i = 0; i < n; ++i) {
     const int old = order[i];
     if (old >= static_cast<int>(slot_of_.size()) || slot_of_[old] < 0) continue;
     slot_of[i] = static_cast<int>(slots.size());
-    slots.resize(slots.size() + kMeshContactSlots);
-    int count = 0;
-    for (const MeshContact& contact : std::as_const(*this).slots(old)) {
-      if (contact.body < 0) break;
+    Slots& mine = slots.emplace_back();
+    for (const MeshContact& contact : std::as_const(*this).contacts(old)) {
       if (meshes[contact.body])
-        slots[slot_of[i] + count++] = contact;
+        mine.contacts[closed[i]++] = contact;
       else
         bereft[i] = 1;
     }
   }
   slot_of_.swap(slot_of);
+  closed_.swap(closed);
   slots_.swap(slots);
   free_slots_.clear();
   rows_.reset(n);
@@ -101,16 +101,38 @@ void FacetList::set_slot(int i, bool needed) {
   if (!needed) {
     free_slots_.push_back(slot_of_[i]);
     slot_of_[i] = -1;
+    closed_[i] = 0;
     return;
   }
   if (free_slots_.empty()) {
     slot_of_[i] = static_cast<int>(slots_.size());
-    slots_.resize(slots_.size() + kMeshContactSlots);
+    slots_.emplace_back();
   } else {
     slot_of_[i] = free_slots_.back();
     free_slots_.pop_back();
   }
-  for (MeshContact& contact : slots(i)) contact = {};
+  closed_[i] = 0;
+}
+
+// `open`: slots without contacts, and so again afterwards. A sphere that touches nothing does not look at its
+// own.
+MeshContactChanges FacetList::update(int i, const Quad& place, const Meshes& meshes, Slots& open) {
+  Slots& mine = slots_[at(i)];
+  const bool none = closed_[i] == 0;
+  if (!none && closed_[i] < kMeshContactSlots) mine.contacts[closed_[i]].body = -1;
+  Slots& work = none ? open : mine;
+  const MeshContactChanges changes =
+      update_mesh_contacts(meshes, facets(i), place.vec(), place.w, work.contacts);
+  closed_[i] = 0;
+  for (MeshContact& contact : work.contacts) {
+    if (contact.body < 0) break;
+    if (none) {
+      mine.contacts[closed_[i]] = contact;
+      contact = {};
+    }
+    ++closed_[i];
+  }
+  return changes;
 }
 
 std::vector<int> FacetList::near_tools(const Meshes& meshes, double time) const {
@@ -130,7 +152,8 @@ std::vector<int> FacetList::near_tools(const Meshes& meshes, double time) const 
 }
 
 std::size_t FacetList::bytes() const {
-  return rows_.bytes() + slot_of_.capacity() * sizeof(int) + slots_.capacity() * sizeof(MeshContact);
+  return rows_.bytes() + slot_of_.capacity() * sizeof(int) + slots_.capacity() * sizeof(Slots) +
+         closed_.capacity();
 }
 
 }  // namespace scree

@@ -1,5 +1,6 @@
 #pragma once
 // Facets that a sphere touches or soon may, cached like pairs, and the memory of its contacts with them.
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -14,6 +15,12 @@ namespace scree {
 class FacetList {
  public:
   using Meshes = std::vector<std::unique_ptr<MeshBody>>;
+
+  /// Contacts of one sphere: those that are closed first.
+  struct Slots {
+    std::array<MeshContact, kMeshContactSlots> contacts;
+    std::int64_t unused = 0;  // keeps groups from lying at the same place of every cache page
+  };
 
   /// Facets of tools are listed this much further out (m), and anew when one has moved by as much.
   void set_tool_skin(double skin) { tool_skin_ = skin; }
@@ -30,17 +37,21 @@ class FacetList {
 
   bool any(int i) const { return slot_of_[i] >= 0; }
   std::span<const FacetRef> facets(int i) const { return rows_.row(i); }
-  /// The contacts of a sphere that has facets; free slots have body -1.
-  std::span<MeshContact> slots(int i) {
-    return {slots_.data() + slot_of_[i], static_cast<std::size_t>(kMeshContactSlots)};
+  /// The contacts of a sphere with meshes.
+  std::span<MeshContact> contacts(int i) {
+    return {slots_[at(i)].contacts.data(), static_cast<std::size_t>(closed_[i])};
   }
-  std::span<const MeshContact> slots(int i) const {
-    return {slots_.data() + slot_of_[i], static_cast<std::size_t>(kMeshContactSlots)};
+  std::span<const MeshContact> contacts(int i) const {
+    return {slots_[at(i)].contacts.data(), static_cast<std::size_t>(closed_[i])};
   }
+  /// Finds the contacts of a sphere that has facets (see update_mesh_contacts()).
+  MeshContactChanges update(int i, const Quad& place, const Meshes& meshes, Slots& open);
   /// Brings what a step needs of a sphere that has facets nearer to the processor.
   void fetch(int i) const {
-    const char* const slots = reinterpret_cast<const char*>(slots_.data() + slot_of_[i]);
-    for (std::size_t k = 0; k < 2 * sizeof(MeshContact); k += 64) __builtin_prefetch(slots + k, 1);
+    if (closed_[i] > 0) {
+      const char* const slots = reinterpret_cast<const char*>(&slots_[at(i)]);
+      for (std::size_t k = 0; k < 2 * sizeof(MeshContact); k += 64) __builtin_prefetch(slots + k, 1);
+    }
     __builtin_prefetch(rows_.begin(i));
   }
   int rows() const { return static_cast<int>(slot_of_.size()); }
@@ -61,8 +72,11 @@ class FacetList {
   };
   std::vector<Box> boxes_;
   Rows<FacetRef> rows_;
-  std::vector<int> slot_of_;  // first slot of a sphere, or -1
-  std::vector<MeshContact> slots_;
+  std::size_t at(int i) const { return slot_of_[i] < 0 ? 0 : static_cast<std::size_t>(slot_of_[i]); }
+
+  std::vector<int> slot_of_;          // of a sphere that has facets, or -1
+  std::vector<std::uint8_t> closed_;  // number of contacts of a sphere
+  std::vector<Slots> slots_{1};       // the first is nobody's
   std::vector<int> free_slots_;
   double tool_skin_ = 0;
   std::vector<FacetRef> row_;

@@ -166,6 +166,7 @@ void RrlinearWorld::split_into_blocks() {
 
 void RrlinearWorld::mesh_forces(BlockWork& work) {
   ContactLaw law = law_;
+  FacetList::Slots open;
   work.near_meshes.clear();
   for (const int i : work.awake)
     if (facets_.any(i)) work.near_meshes.push_back(i);
@@ -174,16 +175,13 @@ void RrlinearWorld::mesh_forces(BlockWork& work) {
     if (k + kAhead < work.near_meshes.size()) facets_.fetch(work.near_meshes[k + kAhead]);
     const int i = work.near_meshes[k];
     const Quad place = spheres_.place[i];
-    const std::span<MeshContact> slots = facets_.slots(i);
-    const MeshContactChanges changes =
-        update_mesh_contacts(meshes_, facets_.facets(i), place.vec(), place.w, slots);
+    const MeshContactChanges changes = facets_.update(i, place, meshes_, open);
     if (changes.born_inside > 0)
       __atomic_fetch_add(&statistics_.squeezed_into_walls, changes.born_inside, __ATOMIC_RELAXED);
     if (changes.without_slot > 0)
       __atomic_fetch_add(&statistics_.crowded_contacts, changes.without_slot, __ATOMIC_RELAXED);
     const Vec3 v = spheres_.velocity[i].vec(), w = spheres_.spin[i].vec();
-    for (MeshContact& c : slots) {
-      if (c.body < 0) break;
+    for (MeshContact& c : facets_.contacts(i)) {
       const MeshBody& body = *meshes_[c.body];
       law.mu = body.surface().mu;
       law.mu_r = body.surface().mu_r;
@@ -277,13 +275,8 @@ double RrlinearWorld::own_step2(int i) const {
   }
   if (facets_.any(i)) {
     const ContactStiffness wall = ball_facet(law_, a.w);
-    int touching = 0;
-    for (const MeshContact& c : facets_.slots(i)) {
-      if (c.body < 0) break;
-      add(wall, c.normal);
-      ++touching;
-    }
-    if (touching == 0) add(wall, Vec3(0, 0, 1));
+    for (const MeshContact& c : facets_.contacts(i)) add(wall, c.normal);
+    if (facets_.contacts(i).empty()) add(wall, Vec3(0, 0, 1));
   }
   // A sphere in free flight may meet one other at least: as stiff as a partner of any size can be.
   const ContactStiffness any = ball_ball(law_, a.w, a.w);
@@ -328,11 +321,9 @@ Energy RrlinearWorld::energy() const {
 }
 
 std::vector<MeshContact> RrlinearWorld::mesh_contacts(int index) const {
-  std::vector<MeshContact> contacts;
-  if (index < facets_.rows() && facets_.any(index))
-    for (const MeshContact& c : facets_.slots(index))
-      if (c.body >= 0) contacts.push_back(c);
-  return contacts;
+  if (index >= facets_.rows()) return {};
+  const std::span<const MeshContact> contacts = facets_.contacts(index);
+  return {contacts.begin(), contacts.end()};
 }
 
 std::size_t RrlinearWorld::bytes() const {
