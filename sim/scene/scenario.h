@@ -94,8 +94,9 @@ struct StopRule {
 };
 
 struct Numerics {
-  double time_step_safety = 0.8;      ///< share of the stable step (rrlinear)
-  bool sleep = true;                  ///< spheres at rest cost nothing until disturbed (rrlinear)
+  double time_step_safety = 0.8;  ///< share of the stable step (rrlinear)
+  bool sleep = true;              ///< spheres at rest cost nothing until disturbed (rrlinear)
+  double wake_tolerance = 0.1;    ///< change of a contact force that wakes, of weight + mean contact force
   double impulse_time_step = 1.0e-3;  ///< s (impulse)
   int impulse_iterations = 20;
 };

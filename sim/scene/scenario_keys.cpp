@@ -159,6 +159,8 @@ Fields keys(Numerics& n) {
        "Share of the stable time step that is taken (engine rrlinear)."},
       {"sleep", Boolean{&n.sleep},
        "Whether grains at rest sleep until disturbed: they then cost nothing (engine rrlinear)."},
+      {"wake_tolerance", Number{&n.wake_tolerance, kNone, {0, 10}},
+       "Change of one contact force that wakes a sleeping grain, over its weight + mean contact force."},
       {"impulse_time_step_s", Number{&n.impulse_time_step, kSecond, {1e-6, 0.1}},
        "Time step of the engine impulse."},
       {"impulse_iterations", Integer{&n.impulse_iterations, {1, 1000}},

@@ -26,6 +26,7 @@ Stage::Stage(const Scenario& scenario, std::uint64_t seed, int threads, const Ru
   settings.impulse_time_step = scenario.numerics.impulse_time_step;
   settings.impulse_iterations = scenario.numerics.impulse_iterations;
   settings.sleep = scenario.numerics.sleep;
+  settings.wake_tolerance = scenario.numerics.wake_tolerance;
   settings.threads = threads;
   world_ =
       scenario.engine == EngineKind::rrlinear ? make_rrlinear_world(settings) : make_impulse_world(settings);

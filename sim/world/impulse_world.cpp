@@ -97,7 +97,7 @@ void ImpulseWorld::advance_to(double end) {
     statistics_.particle_steps += static_cast<double>(movable_.size());
     statistics_.time_step_min = statistics_.time_step_min > 0 ? std::min(statistics_.time_step_min, dt) : dt;
     statistics_.time_step_max = std::max(statistics_.time_step_max, dt);
-    check_spheres();
+    check_spheres(movable_);
     if (changed_) prepare();
   }
 }

@@ -37,7 +37,7 @@ void RockWorld::add_spheres(const std::vector<NewSphere>& spheres) {
   for (const NewSphere& s : spheres) {
     const double radius = 0.5 * s.diameter;
     const double mass = settings_.material.density * M_PI / 6.0 * std::pow(s.diameter, 3);
-    const auto id = static_cast<std::int64_t>(bodies_.size());
+    const std::int64_t id = spheres_.size();
     spheres_.place.push_back({s.position.x(), s.position.y(), s.position.z(), radius});
     spheres_.velocity.push_back({s.velocity.x(), s.velocity.y(), s.velocity.z(), mass});
     spheres_.spin.push_back({s.spin.x(), s.spin.y(), s.spin.z(), 0.4 * mass * radius * radius});
@@ -46,29 +46,44 @@ void RockWorld::add_spheres(const std::vector<NewSphere>& spheres) {
     spheres_.lost.push_back(0);
     spheres_.asleep.push_back(0);
     fixed_.push_back(s.fixed ? 1 : 0);
-
-    shapes_.push_back(std::make_unique<btSphereShape>(radius));
-    const bool dynamic = bullet_moves_spheres() && !s.fixed;
-    btVector3 inertia(0, 0, 0);
-    if (dynamic) shapes_.back()->calculateLocalInertia(mass, inertia);
-    btRigidBody::btRigidBodyConstructionInfo info(dynamic ? mass : 0.0, nullptr, shapes_.back().get(),
-                                                  inertia);
-    info.m_startWorldTransform.setIdentity();
-    info.m_startWorldTransform.setOrigin(to_bullet(s.position));
-    auto body = std::make_unique<btRigidBody>(info);
-    body->setUserIndex(static_cast<int>(id));
-    if (dynamic) {
-      body->setLinearVelocity(to_bullet(s.velocity));
-      body->setAngularVelocity(to_bullet(s.spin));
-    } else if (!s.fixed) {
-      body->setCollisionFlags(body->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
-    }
-    const int group = s.fixed ? kFixedGroup : kRockGroup;
-    addRigidBody(body.get(), group, mask_of(group, bullet_moves_spheres()));
-    bodies_.push_back(std::move(body));
   }
   spheres_.movable = static_cast<int>(std::count(fixed_.begin(), fixed_.end(), 0));
+  if (bullet_moves_spheres()) make_bodies();
   scene_changed();
+}
+
+void RockWorld::make_bodies() {
+  const std::size_t made = bodies_.size(), count = spheres_.place.size();
+  if (made == count) return;
+  bodies_.resize(count);
+  shapes_.resize(count);
+  std::vector<int> by_id(count - made, -1);  // Bullet's order does not depend on ours
+  for (int i = 0; i < spheres_.size(); ++i)
+    if (static_cast<std::size_t>(spheres_.id[i]) >= made)
+      by_id[static_cast<std::size_t>(spheres_.id[i]) - made] = i;
+  for (const int i : by_id) {
+    if (spheres_.lost[i]) continue;
+    const double mass = spheres_.velocity[i].w;
+    const auto id = static_cast<std::size_t>(spheres_.id[i]);
+    shapes_[id] = std::make_unique<btSphereShape>(spheres_.place[i].w);
+    const bool dynamic = bullet_moves_spheres() && !fixed_[i];
+    btVector3 inertia(0, 0, 0);
+    if (dynamic) shapes_[id]->calculateLocalInertia(mass, inertia);
+    btRigidBody::btRigidBodyConstructionInfo info(dynamic ? mass : 0.0, nullptr, shapes_[id].get(), inertia);
+    info.m_startWorldTransform.setIdentity();
+    info.m_startWorldTransform.setOrigin(to_bullet(spheres_.place[i].vec()));
+    bodies_[id] = std::make_unique<btRigidBody>(info);
+    btRigidBody& body = *bodies_[id];
+    body.setUserIndex(static_cast<int>(id));
+    if (dynamic) {
+      body.setLinearVelocity(to_bullet(spheres_.velocity[i].vec()));
+      body.setAngularVelocity(to_bullet(spheres_.spin[i].vec()));
+    } else if (!fixed_[i]) {
+      body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+    }
+    const int group = fixed_[i] ? kFixedGroup : kRockGroup;
+    addRigidBody(&body, group, mask_of(group, bullet_moves_spheres()));
+  }
 }
 
 int RockWorld::add_mesh(TriangleMesh mesh, const Surface& surface, Motion motion) {
@@ -144,9 +159,9 @@ btRigidBody* RockWorld::sphere_body(std::int64_t id) {
   return bodies_[static_cast<std::size_t>(id)].get();
 }
 
-void RockWorld::check_spheres() {
-  for (int i = 0; i < spheres_.size(); ++i) {
-    if (fixed_[i] || spheres_.lost[i]) continue;
+void RockWorld::check_spheres(std::span<const int> spheres) {
+  std::vector<int> lost;
+  for (const int i : spheres) {
     const Vec3 x = spheres_.place[i].vec(), v = spheres_.velocity[i].vec();
     const bool finite = x.allFinite() && v.allFinite() && spheres_.spin[i].vec().allFinite();
     if (!finite || v.squaredNorm() > kTooFast * kTooFast)
@@ -154,18 +169,21 @@ void RockWorld::check_spheres() {
           "the run blew up at t = {:.4f} s (a sphere of {:.3f} m {}): lower numerics.time_step_safety", time_,
           2.0 * spheres_.place[i].w,
           finite ? fmt::format("moves at {:.0f} m/s", v.norm()) : "has no finite position"));
-    if ((x.array() < settings_.domain_low.array()).any() ||
-        (x.array() > settings_.domain_high.array()).any()) {
-      spheres_.lost[i] = 1;
-      ++statistics_.lost_particles;
-      statistics_.lost_mass += spheres_.velocity[i].w;
-      auto& body = bodies_[static_cast<std::size_t>(spheres_.id[i])];
-      removeRigidBody(body.get());
-      body.reset();
-      spheres_.velocity[i].set(Vec3::Zero());
-      spheres_.spin[i].set(Vec3::Zero());
-      sphere_lost(i);
+    if ((x.array() < settings_.domain_low.array()).any() || (x.array() > settings_.domain_high.array()).any())
+      lost.push_back(i);
+  }
+  for (const int i : lost) {
+    spheres_.lost[i] = 1;
+    ++statistics_.lost_particles;
+    statistics_.lost_mass += spheres_.velocity[i].w;
+    const auto id = static_cast<std::size_t>(spheres_.id[i]);
+    if (id < bodies_.size()) {
+      removeRigidBody(bodies_[id].get());
+      bodies_[id].reset();
     }
+    spheres_.velocity[i].set(Vec3::Zero());
+    spheres_.spin[i].set(Vec3::Zero());
+    sphere_lost(i);
   }
 }
 

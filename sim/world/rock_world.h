@@ -13,6 +13,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -111,8 +112,11 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   virtual void scene_changed() = 0;
   /// True if the engine moves spheres through Bullet's solver.
   virtual bool bullet_moves_spheres() const = 0;
-  /// Counts and takes out spheres beyond the domain; throws BlowUp for those that are not finite or too fast.
-  void check_spheres();
+  /// Counts and takes out those of some movable spheres that are beyond the domain; throws BlowUp if one is
+  /// not finite or too fast.
+  void check_spheres(std::span<const int> spheres);
+  /// Makes the Bullet bodies that are not there yet. The explicit engine needs none to step.
+  void make_bodies();
   virtual void sphere_lost(int index) = 0;
 
   WorldSettings settings_;
@@ -121,7 +125,7 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   Spheres spheres_;
   std::vector<std::uint8_t> fixed_;                     // by index
   std::vector<std::unique_ptr<MeshBody>> meshes_;       // null: removed
-  std::vector<std::unique_ptr<btRigidBody>> bodies_;    // by id
+  std::vector<std::unique_ptr<btRigidBody>> bodies_;    // by id; those made so far
   std::vector<std::unique_ptr<btSphereShape>> shapes_;  // by id
 };
 

@@ -62,7 +62,7 @@ void RrlinearWorld::advance_to(double end) {
     if (pairs_.listings() > kListingsBetweenSorts * spheres_.movable) prepare();
     if (steps_to_check_-- <= 0) {
       steps_to_check_ = kStepsBetweenChecks;
-      check_spheres();
+      check_spheres(sleep_.awake());
       if (repair_due_) repair();
       const std::int64_t asleep = sleep_.asleep();
       sleep_.look(spheres_, sum_, pairs_, watched_, law_, time_, settings_.gravity);
@@ -335,6 +335,7 @@ std::size_t RrlinearWorld::bytes() const {
 }
 
 void RrlinearWorld::update_bullet() {
+  make_bodies();
   for (const auto& mesh : meshes_)
     if (mesh && mesh->motion().moves()) {
       mesh->write_back();
@@ -344,9 +345,10 @@ void RrlinearWorld::update_bullet() {
     if (spheres_.lost[i]) continue;
     btRigidBody& body = *bodies_[static_cast<std::size_t>(spheres_.id[i])];
     const btVector3 origin = to_bullet(spheres_.place[i].vec());
-    if (origin == body.getWorldTransform().getOrigin()) continue;
+    const btVector3 velocity = to_bullet(spheres_.velocity[i].vec());
+    if (origin == body.getWorldTransform().getOrigin() && velocity == body.getLinearVelocity()) continue;
     body.getWorldTransform().setOrigin(origin);
-    body.setLinearVelocity(to_bullet(spheres_.velocity[i].vec()));
+    body.setLinearVelocity(velocity);
     body.setAngularVelocity(to_bullet(spheres_.spin[i].vec()));
     updateSingleAabb(&body);
   }
