@@ -138,8 +138,7 @@ void PairList::find_neighbours(int i, std::vector<int>& found) const {
 void PairList::find_neighbours(const std::vector<int>& spheres) {
   const int count = static_cast<int>(spheres.size()), parts = (count + kPart - 1) / kPart;
   if (static_cast<int>(parts_.size()) < parts) parts_.resize(parts);
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) if (threads_ > 1 && parts > 1)
-  for (int p = 0; p < parts; ++p) {
+  const auto search = [&](int p) {
     Part& part = parts_[p];
     part.found.clear();
     part.ends.clear();
@@ -147,7 +146,11 @@ void PairList::find_neighbours(const std::vector<int>& spheres) {
       find_neighbours(spheres[k], part.found);
       part.ends.push_back(static_cast<int>(part.found.size()));
     }
-  }
+  };
+  if (team_)
+    team_->run(parts, search);
+  else
+    for (int p = 0; p < parts; ++p) search(p);
 }
 
 std::span<const int> PairList::found(std::size_t k) const {

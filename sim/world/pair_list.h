@@ -17,6 +17,7 @@
 #include "sim/world/grid.h"
 #include "sim/world/rows.h"
 #include "sim/world/spheres.h"
+#include "sim/world/team.h"
 
 namespace scree {
 
@@ -50,7 +51,7 @@ struct Neighbour {
 class PairList {
  public:
   /// Lets several threads look for pairs; what is found does not depend on it.
-  void set_threads(int threads) { threads_ = threads; }
+  void set_team(Team* team) { team_ = team; }
 
   /// Lists everything from scratch after spheres were added or re-sorted. `order[k]` is the old index of new
   /// sphere k, or -1 for a new one; memory of closed contacts is carried over.
@@ -106,7 +107,7 @@ class PairList {
   std::vector<std::uint32_t> free_memory_;
   std::vector<int> listed_, dropped_;
   std::int64_t listings_ = 0;
-  int threads_ = 1;
+  Team* team_ = nullptr;
 
   // What a search found, part by part: neighbours of the spheres of a part, one list after another.
   struct Part {

@@ -21,8 +21,11 @@ constexpr double kLargestStep = 0.05;  // s; for scenes with nothing stiff in th
 }  // namespace
 
 RrlinearWorld::RrlinearWorld(const WorldSettings& settings)
-    : RockWorld(settings), law_(settings.material), sleep_(settings.sleep, settings.wake_tolerance) {
-  pairs_.set_threads(settings_.threads);
+    : RockWorld(settings),
+      law_(settings.material),
+      team_(settings.threads),
+      sleep_(settings.sleep, settings.wake_tolerance) {
+  pairs_.set_team(&team_);
 }
 
 std::unique_ptr<RockWorld> make_rrlinear_world(const WorldSettings& settings) {
@@ -33,9 +36,7 @@ std::unique_ptr<RockWorld> make_rrlinear_world(const WorldSettings& settings) {
 template <class Body>
 void RrlinearWorld::for_blocks(Body&& body) {
   const int last = static_cast<int>(blocks_.size()) - 1;
-#pragma omp parallel for schedule(dynamic, 1) \
-    num_threads(settings_.threads) if (several_threads() && last > 0)
-  for (int k = 0; k <= last; ++k) body(blocks_[last - k]);
+  team_.run(last + 1, [&](int k) { body(blocks_[last - k]); });
 }
 
 double RrlinearWorld::horizon() const {

@@ -20,6 +20,7 @@
 #include "sim/world/rock_world.h"
 #include "sim/world/sleep.h"
 #include "sim/world/step_kernels.h"
+#include "sim/world/team.h"
 
 namespace scree {
 
@@ -60,6 +61,7 @@ class RrlinearWorld final : public RockWorld {
   void for_blocks(Body&& body);
 
   ContactLaw law_;
+  Team team_;
   bool changed_ = true;      // spheres or meshes were added or removed
   bool repair_due_ = false;  // a sphere may have left its skin, or was lost
   double dt_ = 0;            // stable step, s
