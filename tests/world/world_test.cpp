@@ -235,5 +235,21 @@ TEST(World, StepSimulationIsBulletsOwnEntry) {
   EXPECT_LT(world.sphere_body(0)->getWorldTransform().getOrigin().z(), 5);
 }
 
+// At most 1.5 KB a sphere, contacts included, however wide the grading. Bullet's bodies, a kilobyte and more
+// each, are only made when somebody asks for them.
+TEST(World, MemoryPerSphere) {
+  RrlinearWorld world(WorldSettings{});
+  std::vector<NewSphere> spheres;
+  Random random(31, 0, RandomPurpose::positions);
+  for (int k = 0; k < 20000; ++k) {
+    const double radius = 0.05 * std::pow(27.0, std::pow(random.uniform(), 4.0));
+    spheres.push_back(
+        ball({random.uniform(-12, 12), random.uniform(-12, 12), random.uniform(0, 12)}, radius));
+  }
+  world.add_spheres(spheres);
+  world.advance_to(0.01);
+  EXPECT_LT(static_cast<double>(world.bytes()) / 20000.0, 1500.0);
+}
+
 }  // namespace
 }  // namespace scree

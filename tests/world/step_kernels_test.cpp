@@ -1,0 +1,147 @@
+// The vectorised loops against the law written out: all pairs, one by one, in double precision.
+#include "sim/world/step_kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "tests/world/random_spheres.h"
+
+namespace scree {
+namespace {
+
+Vec3 any_vector(Random& random) {
+  return {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+}
+
+// What contact_forces() works on, for spheres that are all awake.
+struct Scene {
+  Spheres spheres;
+  PairList pairs;
+  Sleep sleep{false, 0.1};
+  ContactLaw law;
+  std::vector<ForceSum> sums;
+  std::vector<BlockWork> blocks;
+
+  Scene(int count, int fixed, const Material& material)
+      : spheres(random_spheres(count, fixed, 21)), law(material), sums(count) {
+    Random random(22, 0, RandomPurpose::positions);
+    for (int i = 0; i < spheres.movable; ++i) {
+      spheres.velocity[i].set(any_vector(random));
+      spheres.spin[i].set(any_vector(random));
+      spheres.spin[i].w = 0.4 * spheres.velocity[i].w * spheres.place[i].w * spheres.place[i].w;
+    }
+    std::vector<int> order(count);
+    std::iota(order.begin(), order.end(), 0);
+    pairs.rebuild(spheres, order, 0.0);
+    sleep.renumber(order, spheres, pairs, std::vector<std::uint8_t>(count, 0), 0.0, 9.81);
+    for (int first = 0; first < spheres.movable; first += kBlock) {
+      const auto size = static_cast<std::size_t>(std::min(kBlock, spheres.movable - first));
+      BlockWork& work = blocks.emplace_back();
+      work.block = first / kBlock;
+      work.rows = sleep.active_rows().subspan(static_cast<std::size_t>(first), size);
+      work.awake = sleep.awake().subspan(static_cast<std::size_t>(first), size);
+    }
+  }
+  // One step's forces; as one thread does it, or as several do.
+  void forces(double dt, bool write_down) {
+    const StepView view{spheres, pairs, sleep, law, dt, sums.data(), write_down};
+    for (auto work = blocks.rbegin(); work != blocks.rend(); ++work) {
+      work->far.clear();
+      work->inbox.clear();
+      contact_forces(view, *work);
+    }
+    for (auto from = blocks.rbegin(); from != blocks.rend(); ++from)
+      for (const FarForces& far : from->far)
+        blocks[static_cast<std::size_t>(far.block)].inbox.push_back(&far);
+  }
+};
+
+// The formulae of rrlinear.h for one contact with memory, as written in their source.
+struct Reference {
+  Vec3 shear = Vec3::Zero(), rolling = Vec3::Zero();
+};
+
+TEST(StepKernels, ForcesAreThoseOfTheLawPairByPair) {
+  Material material;
+  material.mu = 0.3;
+  material.mu_r = 0.2;
+  const double dt = 0.05;
+  Scene scene(700, 60, material);
+  const Spheres& s = scene.spheres;
+  std::vector<std::vector<Reference>> memory(700, std::vector<Reference>(700));
+  for (int step = 0; step < 3; ++step) {
+    scene.forces(dt, false);
+    std::vector<Vec3> force(700, Vec3::Zero()), torque(700, Vec3::Zero());
+    int contacts = 0, sliding = 0;
+    for (int i = 0; i < s.movable; ++i)
+      for (int j = i + 1; j < s.size(); ++j) {
+        const double r1 = s.place[i].w, r2 = s.place[j].w;
+        const Vec3 d = s.place[j].vec() - s.place[i].vec();
+        const double u = r1 + r2 - d.norm();
+        if (u <= 0) continue;
+        ++contacts;
+        const Vec3 n = d / d.norm();
+        const double r = std::min(r1, r2), kn = M_PI * r * r * material.effective_modulus / (r1 + r2);
+        const double ks = kn / material.stiffness_ratio, rbar = r1 * r2 / (r1 + r2), kr = ks * rbar * rbar;
+        const double a1 = r1 - 0.5 * u, a2 = r2 - 0.5 * u;
+        const Vec3 w1 = s.spin[i].vec(), w2 = s.spin[j].vec();
+        const Vec3 v = s.velocity[j].vec() - w2.cross(a2 * n) - s.velocity[i].vec() - w1.cross(a1 * n);
+        const double twist = 0.5 * (w1 + w2).dot(n) * dt;
+        const auto turned = [&](const Vec3& old) -> Vec3 {
+          Vec3 flat = old - n * n.dot(old);
+          if (old.norm() == 0) return Vec3::Zero();
+          flat *= old.norm() / flat.norm();
+          return flat + twist * n.cross(flat);
+        };
+        Reference& m = memory[i][j];
+        m.shear = turned(m.shear) + ks * dt * (v - n * n.dot(v));
+        if (m.shear.norm() > material.mu * kn * u) {
+          m.shear *= material.mu * kn * u / m.shear.norm();
+          ++sliding;
+        }
+        const Vec3 bend = w2 - w1 - n * n.dot(w2 - w1);
+        m.rolling = turned(m.rolling) + kr * dt * bend;
+        const double most = material.mu_r * rbar * kn * u;
+        if (m.rolling.norm() > most) m.rolling *= most / m.rolling.norm();
+        const Vec3 f = m.shear - n * kn * u;
+        force[i] += f, force[j] -= f;
+        torque[i] += a1 * n.cross(f) + m.rolling, torque[j] += a2 * n.cross(f) - m.rolling;
+      }
+    ASSERT_GT(contacts, 500);
+    ASSERT_GT(sliding, 10);
+    ASSERT_LT(sliding, contacts - 10);
+    double size = 0;
+    for (int i = 0; i < s.movable; ++i) size = std::max(size, force[i].norm());
+    for (int i = 0; i < s.movable; ++i) {
+      // The memory is kept in single precision: 2^-24 of it a step.
+      EXPECT_LT((scene.sums[i].force.vec() - force[i]).norm(), 1e-6 * size) << i;
+      EXPECT_LT((scene.sums[i].torque.vec() - torque[i]).norm(), 1e-6 * size) << i;
+    }
+    for (int i = 0; i < scene.spheres.movable; ++i)
+      scene.spheres.place[i].add(1e-4 * dt * scene.spheres.velocity[i].vec());
+  }
+}
+
+// One thread adds far forces as it goes, several write them down; the sums are the same to the last bit.
+TEST(StepKernels, WrittenDownForcesAddUpToTheSameBits) {
+  Scene one(1800, 100, Material{}), many(1800, 100, Material{});
+  ASSERT_GT(one.blocks.size(), 2u);
+  for (int step = 0; step < 3; ++step) {
+    one.forces(1e-4, false);
+    many.forces(1e-4, true);
+    for (Scene* scene : {&one, &many}) {
+      const LeapfrogView view{scene->spheres, scene->pairs, scene->sums.data(), Vec3(0, 0, -9.81), 0.4,
+                              true,           1e-4};
+      for (BlockWork& work : scene->blocks) leapfrog(view, work);
+    }
+    for (int i = 0; i < one.spheres.movable; ++i) {
+      ASSERT_EQ(one.sums[i].force.vec(), many.sums[i].force.vec());
+      ASSERT_EQ(one.sums[i].torque.vec(), many.sums[i].torque.vec());
+      ASSERT_EQ(one.spheres.place[i].vec(), many.spheres.place[i].vec());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace scree
