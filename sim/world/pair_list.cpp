@@ -11,7 +11,7 @@ namespace {
 // enough that a settling pile seldom repairs.
 constexpr double kSkinAtRest = 0.12;
 // Share of its skin (squared) that a sphere must have used up to be listed anew when somebody else has to.
-constexpr double kUsedUp2 = 0.75;
+constexpr double kUsedUp2 = 0.5;
 constexpr int kPart = 64;  // spheres that one task looks up
 
 int place_in(std::span<const Neighbour> row, int sphere) {
