@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "bench/scenes.h"
+#include "sim/world/rrlinear_world.h"
 
 namespace {
 
@@ -25,6 +26,14 @@ double peak_memory_mib() {
   rusage u{};
   getrusage(RUSAGE_SELF, &u);
   return static_cast<double>(u.ru_maxrss) / 1024.0;
+}
+
+// Between spheres.
+double closed_contacts(const scree::PairList& pairs) {
+  double count = 0;
+  for (int i = 0; i < pairs.rows(); ++i)
+    for (const scree::Neighbour& n : pairs.owned(i)) count += n.touching() ? 1 : 0;
+  return count;
 }
 
 }  // namespace
@@ -67,7 +76,8 @@ int main(int argc, char** argv) {
       fmt::print("{} spheres\n", packing.size());
       return 0;
     }
-    const auto world = make_scene(scene, read_packing(file), settings);
+    const auto made = make_scene(scene, read_packing(file), settings);
+    auto* const world = dynamic_cast<scree::RrlinearWorld*>(made.get());
     world->advance_to(from);
     const auto before = world->statistics();
     const double cpu = cpu_seconds(), wall = wall_seconds();
@@ -81,10 +91,12 @@ int main(int argc, char** argv) {
         "\"wall_s\": {:.3f}, \"cpu_s_per_simulated_s\": {:.3f}, \"particle_steps_per_cpu_s\": {:.4g}, "
         "\"awake_particle_steps_per_cpu_s\": {:.4g}, \"ns_per_sphere_and_step\": {:.2f}, \"memory_mib\": "
         "{:.1f}, "
-        "\"asleep\": {}, \"list_repairs\": {}}}\n",
+        "\"asleep\": {}, \"list_repairs\": {}, \"bytes_per_sphere\": {:.1f}, \"contacts_per_sphere\": "
+        "{:.3f}}}\n",
         scene, n, settings.threads, steps, cpu_used, wall_used, cpu_used / seconds, n * steps / cpu_used,
         (after.particle_steps - before.particle_steps) / cpu_used, 1e9 * wall_used / (n * steps),
-        peak_memory_mib(), after.asleep, after.list_repairs - before.list_repairs);
+        peak_memory_mib(), after.asleep, after.list_repairs - before.list_repairs,
+        static_cast<double>(world->bytes()) / n, closed_contacts(world->pairs()) / n);
     if (!state.empty()) {
       Packing end;
       for (const scree::Grain& g : world->snapshot().grains) {
