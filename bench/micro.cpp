@@ -26,11 +26,11 @@ class NanosecondsEach : public benchmark::BenchmarkReporter {
     return true;
   }
   void ReportRuns(const std::vector<Run>& runs) override {
+    if (runs.empty() || runs.front().run_type != Run::RT_Iteration) return;  // means and the like
     double best = 1e300;
     for (const Run& run : runs)
-      if (run.run_type == Run::RT_Iteration)
-        best = std::min(best, 1e9 * run.cpu_accumulated_time / static_cast<double>(run.iterations) /
-                                  run.counters.at("items").value);
+      best = std::min(best, 1e9 * run.cpu_accumulated_time / static_cast<double>(run.iterations) /
+                                run.counters.at("items").value);
     const Run& any = runs.front();
     const std::string &args = any.run_name.args, &label = any.report_label;
     const std::size_t cut = label.find("; ");
