@@ -94,16 +94,16 @@ struct BasicContactForce {
 };
 using ContactForce = BasicContactForce<double>;
 
-/// Turns a remembered vector with the contact: into the new contact plane with its length kept, and about the
-/// normal by `angle` (small), the mean spin of the two, as in PFC3D.
+/// Turns a remembered vector with the contact, its length kept: into the new contact plane, and about the
+/// normal by `angle` (small; atan(angle) to be exact), that of the mean spin of the two, as in PFC3D.
 template <class Vector, class Real = typename RealOf<Vector>::type>
 SCREE_INLINE Vector turned_with_contact(const Vector& v, const Vector& n, std::type_identity_t<Real> angle) {
   const Vector flat = v - n * v.dot(n);
   const Real flat2 = flat.squaredNorm(), full2 = v.squaredNorm();
   // A memory that stands on the new plane, or none at all, leaves nothing.
   const auto lies = flat2 > 1e-24 * full2;
-  const Vector in_plane = flat * pick(lies, root(full2 / flat2), Real{});
-  return in_plane + n.cross(in_plane) * angle;
+  const Real lengthened = 1.0 + angle * angle;  // squared, by the twist
+  return (flat + n.cross(flat) * angle) * pick(lies, root(full2 / (flat2 * lengthened)), Real{});
 }
 
 /// One step of the law; updates the history.

@@ -63,7 +63,7 @@ void FacetList::list_one(int i, bool anew, const Spheres& s, const PairList& pai
     set_slot(i, false);
     return;
   }
-  const Vec3 x = pairs.listed_at(i);
+  const Vec3 x = pairs.ball_at(i);
   // Two tool skins: this tool may be one away from its mark already and one to go.
   const double range = s.place[i].w + pairs.skin(i, s.place[i]) + 2.0 * tool_skin_;
   const auto near = [&](const Box& box) {

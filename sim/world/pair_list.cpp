@@ -10,8 +10,9 @@ namespace {
 // Skin of a sphere at rest, as a share of its radius: small enough to list few pairs that do not touch, large
 // enough that a settling pile seldom repairs.
 constexpr double kSkinAtRest = 0.12;
-// Share of its skin (squared) that a sphere must have used up to be listed anew when somebody else has to.
-constexpr double kUsedUp2 = 0.5;
+// Share of its skin (squared) that a sphere must have crossed, from the middle of its ball, to be listed anew
+// when somebody else has to.
+constexpr double kUsedUp2 = 0.8;
 constexpr int kPart = 64;  // spheres that one task looks up
 
 int place_in(std::span<const Neighbour> row, int sphere) {
@@ -22,14 +23,29 @@ int place_in(std::span<const Neighbour> row, int sphere) {
 
 }  // namespace
 
+// The ball lies ahead of a sphere that moves, so that it crosses the whole of it.
 void PairList::list_anew(int i, const Spheres& s, double horizon) {
   const double radius = s.place[i].w;
+  Vec3 ahead = Vec3::Zero();
   double skin = 0.0;
   if (i < s.movable) {
-    skin = kSkinAtRest * radius + s.velocity[i].vec().norm() * horizon;
-    skin = std::min(skin, grid_.max_reach() - radius);
+    const double rest = kSkinAtRest * radius, most = grid_.max_reach() - radius;
+    ahead = 0.5 * horizon * s.velocity[i].vec();
+    const double length = ahead.norm();
+    if (length > most - rest) ahead *= (most - rest) / length;
+    skin = std::min(rest + length, most);
   }
-  grid_.place(i, s.place[i].vec(), radius + skin);
+  grid_.place(i, s.place[i].vec() + ahead, radius + skin);
+}
+
+// True if sphere i is about to leave its ball: most of the way out, and gone in less than `horizon` at its
+// present velocity.
+bool PairList::leaves_soon(int i, const Spheres& s, double horizon) const {
+  const Quad& at = grid_.site(i);
+  const Vec3 from = s.place[i].vec() - at.vec();
+  const double skin = at.w - s.place[i].w, skin2 = skin * skin, d2 = from.squaredNorm();
+  if (d2 <= kUsedUp2 * skin2) return false;
+  return d2 > skin2 || (from + horizon * s.velocity[i].vec()).squaredNorm() > skin2;
 }
 
 void PairList::rebuild(const Spheres& s, const std::vector<int>& order, double horizon) {
@@ -113,9 +129,7 @@ const std::vector<int>& PairList::repair(const Spheres& s, std::span<const int> 
   dropped_.clear();
   for (const int i : awake) {
     if (s.lost[i]) continue;
-    const Quad &at = grid_.site(i), &x = s.place[i];
-    const double dx = x.x - at.x, dy = x.y - at.y, dz = x.z - at.z, skin = at.w - x.w;
-    if (dx * dx + dy * dy + dz * dz > kUsedUp2 * skin * skin) listed_.push_back(i);
+    if (leaves_soon(i, s, horizon)) listed_.push_back(i);
   }
   for (const int i : listed_) list_anew(i, s, horizon);
   listings_ += static_cast<std::int64_t>(listed_.size());

@@ -1,11 +1,13 @@
 #pragma once
 // Pairs of spheres that touch or soon may, with the memory of their contacts.
 //
-// Each sphere has a skin. A pair is listed when the two reaches (radius plus skin), taken at the places where
-// the spheres were when last listed, overlap; the list is complete as long as no sphere has moved further
-// than its own skin. When one has, it and all others that used up most of theirs are listed anew from the
-// grid; the rows of the rest are not looked at. So a fast sphere repairs its own pairs and nobody else's, and
-// a repair costs what has moved. The skin grows with speed.
+// Each sphere has a ball in which it stays for a while: its own, wider by a skin. A pair is listed when the
+// two balls overlap; the list is complete as long as every sphere is in its ball. When one has left it, it
+// and all others that are about to are listed anew from the grid; the rows of the rest are not looked at. So
+// a fast sphere repairs its own pairs and nobody else's, and a repair costs what has moved. The ball of a
+// sphere that moves lies ahead of it, on the way that it will make in the time for which the list should
+// last: the sphere crosses the whole of it, which takes half the skin that a ball around the present place
+// would.
 //
 // Row i holds all neighbours of movable sphere i, rising; those above i are the pairs that it owns. Both rows
 // of a pair name the same contact memory. Fixed balls have no rows.
@@ -57,15 +59,15 @@ class PairList {
   /// sphere k, or -1 for a new one; memory of closed contacts is carried over.
   void rebuild(const Spheres& spheres, const std::vector<int>& order, double horizon);
 
-  /// True if sphere i may have left its skin.
+  /// True if sphere i has left its ball.
   bool left_skin(int i, const Quad& place) const {
     const Quad& at = grid_.site(i);
     const double dx = place.x - at.x, dy = place.y - at.y, dz = place.z - at.z, skin = at.w - place.w;
     return dx * dx + dy * dy + dz * dz > skin * skin;
   }
 
-  /// Repairs the rows of those of `awake` that used up most of their skin. `horizon` (s): skins hold what a
-  /// sphere moves in this time. Returns the spheres listed anew, rising; valid until the next call.
+  /// Repairs the rows of those of `awake` that have left their ball or soon will. `horizon` (s): balls hold
+  /// what a sphere moves in this time. Returns the spheres listed anew, rising; valid until the next call.
   const std::vector<int>& repair(const Spheres& spheres, std::span<const int> awake, double horizon);
 
   /// Takes a sphere out for good, at the next repair.
@@ -81,8 +83,9 @@ class PairList {
   const ContactMemory& memory(const Neighbour& n) const { return memory_[n.memory()]; }
   ContactMemory* memories() { return memory_.data(); }
   RestForce& rest(std::uint32_t memory) { return rest_[memory]; }
+  /// By how much the ball of sphere i is wider than itself (m), and its centre.
   double skin(int i, const Quad& place) const { return grid_.site(i).w - place.w; }
-  Vec3 listed_at(int i) const { return grid_.site(i).vec(); }
+  Vec3 ball_at(int i) const { return grid_.site(i).vec(); }
   /// Spheres listed since the last rebuild, each as often as it was.
   std::int64_t listings() const { return listings_; }
   /// Bytes held by rows, memories and grid.
@@ -90,6 +93,7 @@ class PairList {
 
  private:
   void list_anew(int i, const Spheres& spheres, double horizon);
+  bool leaves_soon(int i, const Spheres& spheres, double horizon) const;
   void find_neighbours(const std::vector<int>& spheres);
   void find_neighbours(int i, std::vector<int>& found) const;
   std::span<const int> found(std::size_t k) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace scree {
 namespace {
@@ -94,6 +95,19 @@ int RockWorld::add_mesh(TriangleMesh mesh, const Surface& surface, Motion motion
   addRigidBody(&meshes_.back()->body(), kToolGroup, mask_of(kToolGroup, bullet_moves_spheres()));
   scene_changed();
   return static_cast<int>(meshes_.size()) - 1;
+}
+
+void RockWorld::set_velocity(std::int64_t id, const Vec3& velocity, const Vec3& spin) {
+  const auto at = std::find(spheres_.id.begin(), spheres_.id.end(), id);
+  if (at == spheres_.id.end()) throw std::out_of_range(fmt::format("no sphere has the number {}", id));
+  const auto i = static_cast<int>(at - spheres_.id.begin());
+  spheres_.velocity[i].set(velocity);
+  spheres_.spin[i].set(spin);
+  if (bullet_moves_spheres()) {
+    bodies_[static_cast<std::size_t>(id)]->setLinearVelocity(to_bullet(velocity));
+    bodies_[static_cast<std::size_t>(id)]->setAngularVelocity(to_bullet(spin));
+  }
+  sphere_pushed(i);
 }
 
 void RockWorld::set_mesh_motion(int index, Motion motion) {

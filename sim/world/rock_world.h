@@ -83,6 +83,8 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   /// Adds a mesh; returns its index, which stays valid.
   int add_mesh(TriangleMesh mesh, const Surface& surface, Motion motion);
   const MeshBody& mesh(int index) const { return *meshes_[index]; }
+  /// Gives a sphere another velocity (m/s) and spin (rad/s), and wakes it.
+  void set_velocity(std::int64_t id, const Vec3& velocity, const Vec3& spin);
   /// Gives a mesh a new motion; it should start where the mesh is.
   void set_mesh_motion(int index, Motion motion);
   /// Takes a mesh out of the scene; its index is not used again.
@@ -117,6 +119,7 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   void check_spheres(std::span<const int> spheres);
   /// Makes the Bullet bodies that are not there yet. The explicit engine needs none to step.
   void make_bodies();
+  virtual void sphere_pushed(int) {}
   virtual void sphere_lost(int index) = 0;
 
   WorldSettings settings_;

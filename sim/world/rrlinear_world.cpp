@@ -10,7 +10,7 @@ namespace {
 constexpr int kStepsBetweenChecks = 20;  // of the stable step, of lost and runaway spheres
 // Listings per sphere after which neighbours in space are made neighbours in memory again.
 constexpr std::int64_t kListingsBetweenSorts = 25;
-constexpr double kSkinHorizon = 20.0;  // steps that a sphere's skin should last
+constexpr double kSkinHorizon = 30.0;  // steps that a sphere's skin should last
 constexpr double kToolSkin =
     0.5;  // of the smallest radius: how far a tool moves before facets are listed anew
 constexpr double kNearGap =
@@ -48,6 +48,12 @@ int RrlinearWorld::stepSimulation(btScalar span, int, btScalar) {
   advance_to(time_ + span);
   update_bullet();
   return static_cast<int>(statistics_.steps - before);
+}
+
+void RrlinearWorld::sphere_pushed(int index) {
+  if (changed_) return;  // it has not been sorted in yet, and is awake
+  disturbed_.assign(1, index);
+  wake(disturbed_);
 }
 
 void RrlinearWorld::sphere_lost(int index) {

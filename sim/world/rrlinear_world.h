@@ -41,6 +41,7 @@ class RrlinearWorld final : public RockWorld {
  protected:
   void scene_changed() override { changed_ = true; }
   bool bullet_moves_spheres() const override { return false; }
+  void sphere_pushed(int index) override;
   void sphere_lost(int index) override;
 
  private:

@@ -87,12 +87,12 @@ TEST(StepKernels, ForcesAreThoseOfTheLawPairByPair) {
         const double a1 = r1 - 0.5 * u, a2 = r2 - 0.5 * u;
         const Vec3 w1 = s.spin[i].vec(), w2 = s.spin[j].vec();
         const Vec3 v = s.velocity[j].vec() - w2.cross(a2 * n) - s.velocity[i].vec() - w1.cross(a1 * n);
-        const double twist = 0.5 * (w1 + w2).dot(n) * dt;
+        const double twist = std::atan(0.5 * (w1 + w2).dot(n) * dt);
         const auto turned = [&](const Vec3& old) -> Vec3 {
           Vec3 flat = old - n * n.dot(old);
           if (old.norm() == 0) return Vec3::Zero();
           flat *= old.norm() / flat.norm();
-          return flat + twist * n.cross(flat);
+          return std::cos(twist) * flat + std::sin(twist) * n.cross(flat);
         };
         Reference& m = memory[i][j];
         m.shear = turned(m.shear) + ks * dt * (v - n * n.dot(v));
