@@ -99,25 +99,39 @@ void NeighbourGrid::take(Table& table, int i, int level) {
   --table.used;
 }
 
-void NeighbourGrid::place(int i, const Vec3& position, double reach) {
-  assert(reach <= max_reach() * (1 + 1e-12));
-  int level = 0;
-  while (level + 1 < levels_ && cell_[level] < kCellReaches * reach) ++level;
-  const int before = level_[i];
-  level_[i] = static_cast<std::int8_t>(level);
-  site_[i] = {position.x(), position.y(), position.z(), reach};
-  for (int l = before < 0 ? level : std::min(before, level); l < levels_; ++l) {
-    Table* const was = before < 0 || l < before ? nullptr : l == before ? &own_[l] : &finer_[l];
-    Table* const is = l < level ? nullptr : l == level ? &own_[l] : &finer_[l];
-    const std::uint64_t k = key(cell(position.x(), l), cell(position.y(), l), cell(position.z(), l));
-    const std::int32_t slot = slot_[static_cast<std::size_t>(i) * levels_ + l];
-    if (was == is && is != nullptr && is->blocks[slot / kInBlock].key == k) {
-      write(*is, slot, i);
-      continue;
-    }
-    if (was != nullptr) take(*was, i, l);
-    if (is != nullptr) put(*is, i, l, k);
+// The levels know nothing of each other: a thread works on one of them.
+void NeighbourGrid::place(std::span<const int> spheres, std::span<const Quad> sites, Team* team) {
+  before_.resize(spheres.size());
+  for (std::size_t k = 0; k < spheres.size(); ++k) {
+    const int i = spheres[k];
+    assert(sites[k].w <= max_reach() * (1 + 1e-12));
+    int level = 0;
+    while (level + 1 < levels_ && cell_[level] < kCellReaches * sites[k].w) ++level;
+    before_[k] = level_[i];
+    level_[i] = static_cast<std::int8_t>(level);
+    site_[i] = sites[k];
   }
+  const auto work = [&](int level) {
+    for (std::size_t k = 0; k < spheres.size(); ++k) place_on_level(spheres[k], level, before_[k]);
+  };
+  if (team)
+    team->run(levels_, work);
+  else
+    for (int level = 0; level < levels_; ++level) work(level);
+}
+
+// `before`: level of sphere i so far, or -1.
+void NeighbourGrid::place_on_level(int i, int l, int before) {
+  const int level = level_[i];
+  Table* const was = before < 0 || l < before ? nullptr : l == before ? &own_[l] : &finer_[l];
+  Table* const is = l < level ? nullptr : l == level ? &own_[l] : &finer_[l];
+  if (was == nullptr && is == nullptr) return;
+  const Quad& at = site_[i];
+  const std::uint64_t k = key(cell(at.x, l), cell(at.y, l), cell(at.z, l));
+  const std::int32_t slot = slot_[static_cast<std::size_t>(i) * levels_ + l];
+  if (was == is && is->blocks[slot / kInBlock].key == k) return write(*is, slot, i);
+  if (was != nullptr) take(*was, i, l);
+  if (is != nullptr) put(*is, i, l, k);
 }
 
 void NeighbourGrid::remove(int i) {

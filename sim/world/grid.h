@@ -13,9 +13,11 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sim/contact/quad.h"
+#include "sim/world/team.h"
 
 namespace scree {
 
@@ -29,8 +31,13 @@ class NeighbourGrid {
   /// (m).
   void reset(int count, double min_reach, double max_reach);
   double max_reach() const { return cell_.back() / kCellReaches; }
-  /// Puts sphere i at a place, moving it if it is there already. reach <= max_reach().
-  void place(int i, const Vec3& position, double reach);
+  /// Puts spheres at places with their reach as companion (at most max_reach()), moving those that are there
+  /// already. What comes of it does not depend on the threads.
+  void place(std::span<const int> spheres, std::span<const Quad> sites, Team* team);
+  void place(int i, const Vec3& position, double reach) {
+    const Quad site{position.x(), position.y(), position.z(), reach};
+    place({&i, 1}, {&site, 1}, nullptr);
+  }
   void remove(int i);
   /// Calls visit(j) for every other sphere whose reach overlaps that of i, and perhaps some whose reach
   /// ends within a millionth of its distance from the origin; each once.
@@ -84,6 +91,7 @@ class NeighbourGrid {
   std::int64_t cell(double x, int level) const {
     return static_cast<std::int64_t>(std::floor(x * inverse_cell_[level]));
   }
+  void place_on_level(int i, int level, int before);
   void put(Table& table, int i, int level, std::uint64_t k);
   void take(Table& table, int i, int level);
   void write(Table& table, std::int32_t slot, int i);
@@ -96,6 +104,7 @@ class NeighbourGrid {
   std::vector<std::int32_t> slot_;  // sphere * levels + level: place in its table, block * kInBlock + k
   std::vector<std::int8_t> level_;
   std::vector<Quad> site_;
+  std::vector<std::int8_t> before_;  // levels before a call of place()
 };
 
 template <class Visit>

@@ -1,6 +1,7 @@
 #include "sim/world/pair_list.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <limits>
 #include <numeric>
@@ -10,10 +11,7 @@ namespace {
 // Skin of a sphere at rest, as a share of its radius: small enough to list few pairs that do not touch, large
 // enough that a settling pile seldom repairs.
 constexpr double kSkinAtRest = 0.12;
-// Share of its skin (squared) that a sphere must have crossed, from the middle of its ball, to be listed anew
-// when somebody else has to.
-constexpr double kUsedUp2 = 0.8;
-constexpr int kPart = 64;  // spheres that one task looks up
+constexpr int kPart = 32;  // spheres that one task looks up
 
 int place_in(std::span<const Neighbour> row, int sphere) {
   int k = 0;
@@ -24,7 +22,7 @@ int place_in(std::span<const Neighbour> row, int sphere) {
 }  // namespace
 
 // The ball lies ahead of a sphere that moves, so that it crosses the whole of it.
-void PairList::list_anew(int i, const Spheres& s, double horizon) {
+Quad PairList::ball(int i, const Spheres& s, double horizon) const {
   const double radius = s.place[i].w;
   Vec3 ahead = Vec3::Zero();
   double skin = 0.0;
@@ -35,7 +33,8 @@ void PairList::list_anew(int i, const Spheres& s, double horizon) {
     if (length > most - rest) ahead *= (most - rest) / length;
     skin = std::min(rest + length, most);
   }
-  grid_.place(i, s.place[i].vec() + ahead, radius + skin);
+  const Vec3 middle = s.place[i].vec() + ahead;
+  return {middle.x(), middle.y(), middle.z(), radius + skin};
 }
 
 // True if sphere i is about to leave its ball: most of the way out, and gone in less than `horizon` at its
@@ -44,7 +43,7 @@ bool PairList::leaves_soon(int i, const Spheres& s, double horizon) const {
   const Quad& at = grid_.site(i);
   const Vec3 from = s.place[i].vec() - at.vec();
   const double skin = at.w - s.place[i].w, skin2 = skin * skin, d2 = from.squaredNorm();
-  if (d2 <= kUsedUp2 * skin2) return false;
+  if (d2 <= kNearRim2 * skin2) return false;
   return d2 > skin2 || (from + horizon * s.velocity[i].vec()).squaredNorm() > skin2;
 }
 
@@ -75,12 +74,11 @@ void PairList::rebuild(const Spheres& s, const std::vector<int>& order, double h
   if (max_radius == 0) return;
 
   grid_.reset(n, min_radius * (1 + kSkinAtRest), 2.0 * max_radius);
-  for (int i = 0; i < n; ++i) {
-    if (s.lost[i]) continue;
-    list_anew(i, s, horizon);
-    if (i < s.movable) listed_.push_back(i);
-  }
-  find_neighbours(listed_);
+  balls_.clear();
+  for (int i = 0; i < n; ++i)
+    if (!s.lost[i]) listed_.push_back(i), balls_.push_back(ball(i, s, horizon));
+  grid_.place(listed_, balls_, team_);
+  while (!listed_.empty() && listed_.back() >= s.movable) listed_.pop_back();
 
   // Memory of a pair that was closed before, with the sign that goes with the new order of its pieces.
   const auto carry = [&](int i, int j, Neighbour& entry) {
@@ -100,10 +98,9 @@ void PairList::rebuild(const Spheres& s, const std::vector<int>& order, double h
     for (int k = 0; k < 3; ++k) memory.shear[k] = -memory.shear[k], memory.rolling[k] = -memory.rolling[k];
     rest.x = -rest.x, rest.y = -rest.y, rest.z = -rest.z;
   };
-  for (std::size_t k = 0; k < listed_.size(); ++k) {
-    const int i = listed_[k];
+  find_neighbours([&](int i, std::span<const int> found) {
     row_.clear();
-    for (const int j : found(k)) {
+    for (const int j : found) {
       Neighbour entry{j, 0};
       if (j < i) {
         const auto row = owned(j);
@@ -116,26 +113,31 @@ void PairList::rebuild(const Spheres& s, const std::vector<int>& order, double h
       row_.push_back(entry);
     }
     rows_.assign(i, row_);
-  }
+  });
 }
 
-const std::vector<int>& PairList::repair(const Spheres& s, std::span<const int> awake, double horizon) {
+const std::vector<int>& PairList::move_balls(const Spheres& s, std::span<const int> near_rim,
+                                             double horizon) {
   listed_.clear();
+  balls_.clear();
   std::sort(dropped_.begin(), dropped_.end());
   for (const int i : dropped_) {
     grid_.remove(i);
     clear_row(i, s.movable);
   }
   dropped_.clear();
-  for (const int i : awake) {
-    if (s.lost[i]) continue;
-    if (leaves_soon(i, s, horizon)) listed_.push_back(i);
+  for (const int i : near_rim) {
+    if (s.lost[i] || !leaves_soon(i, s, horizon)) continue;
+    listed_.push_back(i);
+    balls_.push_back(ball(i, s, horizon));
   }
-  for (const int i : listed_) list_anew(i, s, horizon);
+  grid_.place(listed_, balls_, team_);
   listings_ += static_cast<std::int64_t>(listed_.size());
-  find_neighbours(listed_);
-  for (std::size_t k = 0; k < listed_.size(); ++k) apply(listed_[k], found(k), s.movable);
   return listed_;
+}
+
+void PairList::repair(const Spheres& s) {
+  find_neighbours([&](int i, std::span<const int> found) { apply(i, found, s.movable); });
 }
 
 void PairList::find_neighbours(int i, std::vector<int>& found) const {
@@ -149,29 +151,46 @@ void PairList::find_neighbours(int i, std::vector<int>& found) const {
   std::sort(found.begin() + static_cast<std::ptrdiff_t>(first), found.end());
 }
 
-void PairList::find_neighbours(const std::vector<int>& spheres) {
-  const int count = static_cast<int>(spheres.size()), parts = (count + kPart - 1) / kPart;
+// Finds the neighbours of the spheres listed and calls apply(i, found) for one after another, in their order.
+// Several threads search; whoever has ended a part applies what is ready, unless another thread does already.
+template <class Apply>
+void PairList::find_neighbours(const Apply& apply) {
+  const int count = static_cast<int>(listed_.size()), parts = (count + kPart - 1) / kPart;
   if (static_cast<int>(parts_.size()) < parts) parts_.resize(parts);
+  for (int p = 0; p < parts; ++p) parts_[p].searched = false;
+  const auto searched = [&](int p) { return std::atomic_ref<bool>(parts_[p].searched); };
+  int next = 0;  // part to apply; of the thread that applies
+  std::atomic<bool> applying{false};
+  const auto apply_what_is_ready = [&] {
+    while (!applying.exchange(true, std::memory_order_acquire)) {
+      for (; next < parts && searched(next).load(std::memory_order_acquire); ++next) {
+        const Part& part = parts_[next];
+        int begin = 0;
+        for (std::size_t k = 0; k < part.ends.size(); begin = part.ends[k++])
+          apply(listed_[static_cast<std::size_t>(next) * kPart + k],
+                std::span(part.found).subspan(begin, part.ends[k] - begin));
+      }
+      const int waiting = next;
+      applying.store(false, std::memory_order_seq_cst);
+      // One that ended its part while this thread held the work has left it behind.
+      if (waiting >= parts || !searched(waiting).load(std::memory_order_seq_cst)) return;
+    }
+  };
   const auto search = [&](int p) {
     Part& part = parts_[p];
     part.found.clear();
     part.ends.clear();
     for (int k = p * kPart; k < std::min(count, (p + 1) * kPart); ++k) {
-      find_neighbours(spheres[k], part.found);
+      find_neighbours(listed_[k], part.found);
       part.ends.push_back(static_cast<int>(part.found.size()));
     }
+    searched(p).store(true, std::memory_order_seq_cst);
+    apply_what_is_ready();
   };
   if (team_)
     team_->run(parts, search);
   else
     for (int p = 0; p < parts; ++p) search(p);
-}
-
-std::span<const int> PairList::found(std::size_t k) const {
-  const Part& part = parts_[k / kPart];
-  const std::size_t at = k % kPart;
-  const int begin = at == 0 ? 0 : part.ends[at - 1];
-  return {part.found.data() + begin, static_cast<std::size_t>(part.ends[at] - begin)};
 }
 
 std::uint32_t PairList::new_memory() {

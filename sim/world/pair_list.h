@@ -59,16 +59,24 @@ class PairList {
   /// sphere k, or -1 for a new one; memory of closed contacts is carried over.
   void rebuild(const Spheres& spheres, const std::vector<int>& order, double horizon);
 
-  /// True if sphere i has left its ball.
-  bool left_skin(int i, const Quad& place) const {
+  /// Share of the way to the rim of its ball from which a sphere is looked at when others are listed,
+  /// squared.
+  static constexpr double kNearRim2 = 0.8;
+
+  /// Where sphere i is in its ball: square of the way from the middle over that to the rim; above 1 it has
+  /// left the ball.
+  double way_out2(int i, const Quad& place) const {
     const Quad& at = grid_.site(i);
     const double dx = place.x - at.x, dy = place.y - at.y, dz = place.z - at.z, skin = at.w - place.w;
-    return dx * dx + dy * dy + dz * dz > skin * skin;
+    return (dx * dx + dy * dy + dz * dz) / (skin * skin);
   }
 
-  /// Repairs the rows of those of `awake` that have left their ball or soon will. `horizon` (s): balls hold
-  /// what a sphere moves in this time. Returns the spheres listed anew, rising; valid until the next call.
-  const std::vector<int>& repair(const Spheres& spheres, std::span<const int> awake, double horizon);
+  /// Finds those of `near_rim` (way_out2() > kNearRim2) that have left their ball or soon will, and gives
+  /// them new ones. `horizon` (s): balls hold what a sphere moves in this time. Returns these spheres in the
+  /// order of `near_rim`; valid until the next call. repair() must follow.
+  const std::vector<int>& move_balls(const Spheres& spheres, std::span<const int> near_rim, double horizon);
+  /// Brings the rows of the spheres whose balls have moved up to date.
+  void repair(const Spheres& spheres);
 
   /// Takes a sphere out for good, at the next repair.
   void drop(int i) { dropped_.push_back(i); }
@@ -92,11 +100,11 @@ class PairList {
   std::size_t bytes() const;
 
  private:
-  void list_anew(int i, const Spheres& spheres, double horizon);
+  Quad ball(int i, const Spheres& spheres, double horizon) const;
   bool leaves_soon(int i, const Spheres& spheres, double horizon) const;
-  void find_neighbours(const std::vector<int>& spheres);
+  template <class Apply>
+  void find_neighbours(const Apply& apply);
   void find_neighbours(int i, std::vector<int>& found) const;
-  std::span<const int> found(std::size_t k) const;
   void apply(int i, std::span<const int> found, int movable);
   void clear_row(int i, int movable);
   std::uint32_t new_memory();
@@ -116,8 +124,10 @@ class PairList {
   // What a search found, part by part: neighbours of the spheres of a part, one list after another.
   struct Part {
     std::vector<int> found, ends;
+    bool searched = false;  // by std::atomic_ref
   };
   std::vector<Part> parts_;
+  std::vector<Quad> balls_;
   std::vector<Neighbour> row_, new_;
 };
 

@@ -119,11 +119,15 @@ void RrlinearWorld::find_watched() {
 void RrlinearWorld::repair() {
   repair_due_ = false;
   ++statistics_.list_repairs;
-  const std::vector<int>& listed = pairs_.repair(spheres_, sleep_.awake(), horizon());
+  near_rim_.clear();
+  for (const BlockWork& work : blocks_)
+    near_rim_.insert(near_rim_.end(), work.near_rim.begin(), work.near_rim.end());
+  const std::vector<int>& listed = pairs_.move_balls(spheres_, near_rim_, horizon());
   bool tools_moved = false;
   for (const auto& mesh : meshes_)
     if (mesh && mesh->moved_since_mark() > facets_.tool_skin()) tools_moved = true;
   if (!listed.empty() || tools_moved) facets_.list(listed, tools_moved, spheres_, pairs_, meshes_);
+  pairs_.repair(spheres_);
   if (!sleep_.on()) return;
   if (tools_moved) {
     find_watched();
@@ -164,6 +168,7 @@ void RrlinearWorld::split_into_blocks() {
     while (r < rows.size() && rows[r] / kBlock == block) ++r;
     while (a < awake.size() && awake[a] / kBlock == block) ++a;
     work.block = block;
+    work.near_rim.clear();
     block_at_[block] = static_cast<int>(count) - 1;
     work.rows = rows.subspan(first_row, r - first_row);
     work.awake = awake.subspan(first_awake, a - first_awake);
@@ -216,15 +221,13 @@ void RrlinearWorld::forces() {
   if (blocks_due_) split_into_blocks();
   const StepView view{spheres_, pairs_, sleep_, law_, last_dt_, sum_.data(), several_threads()};
   for_blocks([&](BlockWork& work) {
-    work.far.clear();
-    work.disturbed.clear();
     contact_forces(view, work);
     mesh_forces(work);
   });
   if (!several_threads()) return;
   for (BlockWork& work : blocks_) work.inbox.clear();
   for (auto from = blocks_.rbegin(); from != blocks_.rend(); ++from)
-    for (const FarForces& far : from->far)
+    for (const FarForces& far : from->written_down())
       if (const int at = block_at_[far.block]; at >= 0) blocks_[at].inbox.push_back(&far);
 }
 
@@ -248,7 +251,7 @@ void RrlinearWorld::step(double dt) {
   for_blocks([&](BlockWork& work) { leapfrog(view, work); });
   disturbed_.clear();
   for (BlockWork& work : blocks_) {
-    repair_due_ = repair_due_ || work.left_skin;
+    repair_due_ = repair_due_ || work.left_ball;
     statistics_.largest_overlap_ratio = std::max(statistics_.largest_overlap_ratio, work.overlap_ratio);
     disturbed_.insert(disturbed_.end(), work.disturbed.begin(), work.disturbed.end());
   }

@@ -75,7 +75,7 @@ class RrlinearWorld final : public RockWorld {
   std::vector<ForceSum> sum_;          // by sphere; of awake ones, from the last step
   std::vector<BlockWork> blocks_;      // those with anything to do
   std::vector<int> block_at_;          // by block: its place in blocks_, or -1
-  std::vector<int> disturbed_;
+  std::vector<int> disturbed_, near_rim_;
   bool blocks_due_ = true;  // who is awake, or which rows are active, has changed
 };
 

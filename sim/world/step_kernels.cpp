@@ -154,8 +154,12 @@ SCREE_INLINE void finish_batch(const StepView& view, Batch& batch, Lanes& overla
     } else {
       const int block = j / kBlock;
       std::size_t at = 0;
-      while (at < work.far.size() && work.far[at].block != block) ++at;
-      if (at == work.far.size()) work.far.push_back({block, {}});
+      while (at < work.far_blocks && work.far[at].block != block) ++at;
+      if (at == work.far_blocks) {
+        if (++work.far_blocks > work.far.size()) work.far.emplace_back();
+        work.far[at].block = block;
+        work.far[at].entries.clear();
+      }
       work.far[at].entries.push_back({back, load(batch.torque2[k]), j});
     }
   }
@@ -186,6 +190,8 @@ void contact_forces(const StepView& view, BlockWork& work) {
   const Quad* place = s.place.data();
   Batch batch;
   Lanes overlap_ratio{};
+  work.far_blocks = 0;
+  work.disturbed.clear();
   for (const int i : work.awake) store(view.sum[i].force, Lanes{}), store(view.sum[i].torque, Lanes{});
   for (const int i : work.rows) {
     const std::span<Neighbour> row = view.pairs.owned(i);
@@ -236,6 +242,7 @@ void leapfrog(const LeapfrogView& view, BlockWork& work) {
       store(sum.torque, load(sum.torque) + entry.torque);
     }
   bool left = false;
+  work.near_rim.clear();
   for (const int i : work.awake) {
     const Lanes force = load(view.sum[i].force), torque = load(view.sum[i].torque);
     Lanes v = load(s.velocity[i]), w = load(s.spin[i]), x = load(s.place[i]);
@@ -245,9 +252,12 @@ void leapfrog(const LeapfrogView& view, BlockWork& work) {
     w += dt / inertia * damped(torque, w, alpha);
     x += dt * v;
     store(s.velocity[i], v), store(s.spin[i], w), store(s.place[i], x);
-    if (view.pairs.left_skin(i, s.place[i])) left = true;
+    if (const double way_out2 = view.pairs.way_out2(i, s.place[i]); way_out2 > PairList::kNearRim2) {
+      work.near_rim.push_back(i);
+      left = left || way_out2 > 1;
+    }
   }
-  work.left_skin = left;
+  work.left_ball = left;
 }
 
 }  // namespace scree

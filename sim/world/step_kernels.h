@@ -38,9 +38,12 @@ struct BlockWork {
   std::vector<int> near_meshes;  ///< awake spheres of the block that have facets
   std::vector<int> disturbed;    ///< sleepers that one of its contacts wakes
   double overlap_ratio = 0;      ///< largest overlap over the smaller radius
-  bool left_skin = false;        ///< a sphere may have left its skin
+  bool left_ball = false;        ///< a sphere has left its ball (PairList)
+  std::vector<int> near_rim;     ///< those that have, or are near its rim
   double step2 = 0, travel = 0;  ///< stable step squared (s2) and the step for the longest travel (s)
-  std::vector<FarForces> far;    ///< written down for later blocks (several threads)
+  std::vector<FarForces> far;    ///< written down for later blocks (several threads); the first far_blocks
+  std::size_t far_blocks = 0;
+  std::span<const FarForces> written_down() const { return std::span(far).first(far_blocks); }
   std::vector<const FarForces*>
       inbox;  ///< what earlier blocks wrote down for this one, in the order of adding
 };
@@ -55,8 +58,8 @@ struct StepView {
   bool write_down;  ///< forces that cross a border are written down instead of added
 };
 
-/// Forces of the contacts that the block's rows own; the sums of the block's awake spheres begin here, from
-/// zero.
+/// Forces of the contacts that the block's rows own, what they write down, and whom they wake; the sums of
+/// the block's awake spheres begin here, from zero.
 void contact_forces(const StepView& view, BlockWork& work);
 
 struct LeapfrogView {
@@ -69,7 +72,7 @@ struct LeapfrogView {
   double dt;  ///< s
 };
 
-/// Moves the block's spheres by one step; sets work.left_skin.
+/// Moves the block's spheres by one step; finds those near the rim of their balls.
 void leapfrog(const LeapfrogView& view, BlockWork& work);
 
 }  // namespace scree

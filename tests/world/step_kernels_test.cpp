@@ -47,12 +47,11 @@ struct Scene {
   void forces(double dt, bool write_down) {
     const StepView view{spheres, pairs, sleep, law, dt, sums.data(), write_down};
     for (auto work = blocks.rbegin(); work != blocks.rend(); ++work) {
-      work->far.clear();
       work->inbox.clear();
       contact_forces(view, *work);
     }
     for (auto from = blocks.rbegin(); from != blocks.rend(); ++from)
-      for (const FarForces& far : from->far)
+      for (const FarForces& far : from->written_down())
         blocks[static_cast<std::size_t>(far.block)].inbox.push_back(&far);
   }
 };
