@@ -11,22 +11,25 @@ std::vector<std::uint8_t> FacetList::renumber(const std::vector<int>& order, con
   std::vector<std::uint8_t> bereft(s.size(), 0);
   std::vector<int> slot_of(n, -1);
   std::vector<std::uint8_t> closed(n, 0);
-  std::vector<Slots> slots(1);
+  std::vector<Contacts> contacts;  // of spheres that have facets
   for (int i = 0; i < n; ++i) {
     const int old = order[i];
     if (old >= static_cast<int>(slot_of_.size()) || slot_of_[old] < 0) continue;
-    slot_of[i] = static_cast<int>(slots.size());
-    Slots& mine = slots.emplace_back();
-    for (const MeshContact& contact : std::as_const(*this).contacts(old)) {
-      if (meshes[contact.body])
-        mine.contacts[closed[i]++] = contact;
+    slot_of[i] = static_cast<int>(contacts.size()) + 1;
+    Contacts& mine = contacts.emplace_back();
+    for (int k = 0; k < closed_[old]; ++k) {
+      if (meshes[contact(old, k).body])
+        mine[closed[i]++] = contact(old, k);
       else
         bereft[i] = 1;
     }
   }
   slot_of_.swap(slot_of);
-  closed_.swap(closed);
-  slots_.swap(slots);
+  closed_.assign(n, 0);
+  first_.assign(contacts.size() + 1, {});
+  others_.assign(contacts.size() + 1, {});
+  for (int i = 0; i < n; ++i)
+    if (slot_of_[i] >= 0) store(i, contacts[at(i) - 1]);
   free_slots_.clear();
   rows_.reset(n);
   return bereft;
@@ -105,8 +108,9 @@ void FacetList::set_slot(int i, bool needed) {
     return;
   }
   if (free_slots_.empty()) {
-    slot_of_[i] = static_cast<int>(slots_.size());
-    slots_.emplace_back();
+    slot_of_[i] = static_cast<int>(first_.size());
+    first_.emplace_back();
+    others_.emplace_back();
   } else {
     slot_of_[i] = free_slots_.back();
     free_slots_.pop_back();
@@ -114,25 +118,13 @@ void FacetList::set_slot(int i, bool needed) {
   closed_[i] = 0;
 }
 
-// `open`: slots without contacts, and so again afterwards. A sphere that touches nothing does not look at its
-// own.
-MeshContactChanges FacetList::update(int i, const Quad& place, const Meshes& meshes, Slots& open) {
-  Slots& mine = slots_[at(i)];
-  const bool none = closed_[i] == 0;
-  if (!none && closed_[i] < kMeshContactSlots) mine.contacts[closed_[i]].body = -1;
-  Slots& work = none ? open : mine;
-  const MeshContactChanges changes =
-      update_mesh_contacts(meshes, facets(i), place.vec(), place.w, work.contacts);
+void FacetList::store(int i, const Contacts& contacts) {
   closed_[i] = 0;
-  for (MeshContact& contact : work.contacts) {
+  for (const MeshContact& contact : contacts) {
     if (contact.body < 0) break;
-    if (none) {
-      mine.contacts[closed_[i]] = contact;
-      contact = {};
-    }
+    (closed_[i] == 0 ? first_[at(i)] : others_[at(i)][static_cast<std::size_t>(closed_[i]) - 1]) = contact;
     ++closed_[i];
   }
-  return changes;
 }
 
 std::vector<int> FacetList::near_tools(const Meshes& meshes, double time) const {
@@ -152,7 +144,7 @@ std::vector<int> FacetList::near_tools(const Meshes& meshes, double time) const 
 }
 
 std::size_t FacetList::bytes() const {
-  return rows_.bytes() + slot_of_.capacity() * sizeof(int) + slots_.capacity() * sizeof(Slots) +
+  return rows_.bytes() + slot_of_.capacity() * sizeof(int) + first_.capacity() * sizeof(Contacts) +
          closed_.capacity();
 }
 

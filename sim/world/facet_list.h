@@ -16,11 +16,8 @@ class FacetList {
  public:
   using Meshes = std::vector<std::unique_ptr<MeshBody>>;
 
-  /// Contacts of one sphere: those that are closed first.
-  struct Slots {
-    std::array<MeshContact, kMeshContactSlots> contacts;
-    std::int64_t unused = 0;  // keeps groups from lying at the same place of every cache page
-  };
+  /// Contacts of one sphere; the first with body -1 ends them.
+  using Contacts = std::array<MeshContact, kMeshContactSlots>;
 
   /// Facets of tools are listed this much further out (m), and anew when one has moved by as much.
   void set_tool_skin(double skin) { tool_skin_ = skin; }
@@ -37,20 +34,22 @@ class FacetList {
 
   bool any(int i) const { return slot_of_[i] >= 0; }
   std::span<const FacetRef> facets(int i) const { return rows_.row(i); }
-  /// The contacts of a sphere with meshes.
-  std::span<MeshContact> contacts(int i) {
-    return {slots_[at(i)].contacts.data(), static_cast<std::size_t>(closed_[i])};
+  /// Number of contacts of a sphere with meshes, and the contacts.
+  int count(int i) const { return closed_[i]; }
+  const MeshContact& contact(int i, int k) const {
+    return k == 0 ? first_[at(i)] : others_[at(i)][static_cast<std::size_t>(k) - 1];
   }
-  std::span<const MeshContact> contacts(int i) const {
-    return {slots_[at(i)].contacts.data(), static_cast<std::size_t>(closed_[i])};
+  void load(int i, Contacts& contacts) const {
+    for (int k = 0; k < closed_[i]; ++k) contacts[static_cast<std::size_t>(k)] = contact(i, k);
+    if (closed_[i] < kMeshContactSlots) contacts[closed_[i]].body = -1;
   }
-  /// Finds the contacts of a sphere that has facets (see update_mesh_contacts()).
-  MeshContactChanges update(int i, const Quad& place, const Meshes& meshes, Slots& open);
+  void store(int i, const Contacts& contacts);
   /// Brings what a step needs of a sphere that has facets nearer to the processor.
   void fetch(int i) const {
     if (closed_[i] > 0) {
-      const char* const slots = reinterpret_cast<const char*>(&slots_[at(i)]);
-      for (std::size_t k = 0; k < 2 * sizeof(MeshContact); k += 64) __builtin_prefetch(slots + k, 1);
+      const char* const first = reinterpret_cast<const char*>(&first_[at(i)]);
+      __builtin_prefetch(first, 1);
+      __builtin_prefetch(first + sizeof(MeshContact) - 1, 1);
     }
     __builtin_prefetch(rows_.begin(i));
   }
@@ -76,7 +75,9 @@ class FacetList {
 
   std::vector<int> slot_of_;          // of a sphere that has facets, or -1
   std::vector<std::uint8_t> closed_;  // number of contacts of a sphere
-  std::vector<Slots> slots_{1};       // the first is nobody's
+  // By slot; the first is nobody's. Most spheres that touch a mesh have one contact: those lie side by side.
+  std::vector<MeshContact> first_{1};
+  std::vector<std::array<MeshContact, kMeshContactSlots - 1>> others_{1};
   std::vector<int> free_slots_;
   double tool_skin_ = 0;
   std::vector<FacetRef> row_;

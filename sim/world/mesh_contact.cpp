@@ -192,13 +192,13 @@ MeshContactChanges update_mesh_contacts(const std::vector<std::unique_ptr<MeshBo
     if (count != k) slots[count] = slots[k];
     ++count;
   }
-  for (int k = count; k < known; ++k) slots[k].body = -1;
   for (int m = 0; m < fresh_count; ++m) {
     if (count == static_cast<int>(slots.size()))
       ++changes.without_slot;
     else
       slots[count++] = {fresh[m].body, fresh[m].normal, fresh[m].overlap, fresh[m].excess, {}};
   }
+  if (count < static_cast<int>(slots.size())) slots[count].body = -1;
   return changes;
 }
 

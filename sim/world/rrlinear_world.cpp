@@ -178,7 +178,7 @@ void RrlinearWorld::split_into_blocks() {
 
 void RrlinearWorld::mesh_forces(BlockWork& work) {
   ContactLaw law = law_;
-  FacetList::Slots open;
+  FacetList::Contacts contacts;
   work.near_meshes.clear();
   for (const int i : work.awake)
     if (facets_.any(i)) work.near_meshes.push_back(i);
@@ -187,13 +187,16 @@ void RrlinearWorld::mesh_forces(BlockWork& work) {
     if (k + kAhead < work.near_meshes.size()) facets_.fetch(work.near_meshes[k + kAhead]);
     const int i = work.near_meshes[k];
     const Quad place = spheres_.place[i];
-    const MeshContactChanges changes = facets_.update(i, place, meshes_, open);
+    facets_.load(i, contacts);
+    const MeshContactChanges changes =
+        update_mesh_contacts(meshes_, facets_.facets(i), place.vec(), place.w, contacts);
     if (changes.born_inside > 0)
       __atomic_fetch_add(&statistics_.squeezed_into_walls, changes.born_inside, __ATOMIC_RELAXED);
     if (changes.without_slot > 0)
       __atomic_fetch_add(&statistics_.crowded_contacts, changes.without_slot, __ATOMIC_RELAXED);
     const Vec3 v = spheres_.velocity[i].vec(), w = spheres_.spin[i].vec();
-    for (MeshContact& c : facets_.contacts(i)) {
+    for (MeshContact& c : contacts) {
+      if (c.body < 0) break;
       const MeshBody& body = *meshes_[c.body];
       law.mu = body.surface().mu;
       law.mu_r = body.surface().mu_r;
@@ -214,6 +217,7 @@ void RrlinearWorld::mesh_forces(BlockWork& work) {
       sum_[i].torque.add(arm * normal.cross(f.force) + f.rolling);
       work.overlap_ratio = std::max(work.overlap_ratio, c.overlap / place.w);
     }
+    facets_.store(i, contacts);
   }
 }
 
@@ -285,8 +289,8 @@ double RrlinearWorld::own_step2(int i) const {
   }
   if (facets_.any(i)) {
     const ContactStiffness wall = ball_facet(law_, a.w);
-    for (const MeshContact& c : facets_.contacts(i)) add(wall, c.normal);
-    if (facets_.contacts(i).empty()) add(wall, Vec3(0, 0, 1));
+    for (int k = 0; k < facets_.count(i); ++k) add(wall, facets_.contact(i, k).normal);
+    if (facets_.count(i) == 0) add(wall, Vec3(0, 0, 1));
   }
   // A sphere in free flight may meet one other at least: as stiff as a partner of any size can be.
   const ContactStiffness any = ball_ball(law_, a.w, a.w);
@@ -331,9 +335,10 @@ Energy RrlinearWorld::energy() const {
 }
 
 std::vector<MeshContact> RrlinearWorld::mesh_contacts(int index) const {
-  if (index >= facets_.rows()) return {};
-  const std::span<const MeshContact> contacts = facets_.contacts(index);
-  return {contacts.begin(), contacts.end()};
+  std::vector<MeshContact> contacts;
+  if (index < facets_.rows())
+    for (int k = 0; k < facets_.count(index); ++k) contacts.push_back(facets_.contact(index, k));
+  return contacts;
 }
 
 std::size_t RrlinearWorld::bytes() const {
