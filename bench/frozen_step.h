@@ -27,7 +27,7 @@ class FrozenStep {
       BlockWork& work = blocks_.emplace_back();
       const std::size_t count = std::min(kBlock, n - first);
       work.block = first / kBlock;
-      work.rows = work.awake = sleep_.awake().subspan(first, count);
+      work.awake = sleep_.awake().subspan(first, count);
     }
     for (int b = 0; b < blocks(); ++b) forces(b);
   }
@@ -40,13 +40,13 @@ class FrozenStep {
   }
   double spheres(int first, int last) const {
     double count = 0;
-    for (int b = first; b < last; ++b) count += static_cast<double>(blocks_[b].rows.size());
+    for (int b = first; b < last; ++b) count += static_cast<double>(blocks_[b].awake.size());
     return count;
   }
   double pairs(int first, int last, bool closed) const {
     double count = 0;
     for (int b = first; b < last; ++b)
-      for (const int i : blocks_[b].rows)
+      for (const int i : blocks_[b].awake)
         for (const Neighbour& n : pairs_.owned(i)) count += !closed || n.touching() ? 1 : 0;
     return count;
   }

@@ -196,7 +196,8 @@ MeshContactChanges update_mesh_contacts(const std::vector<std::unique_ptr<MeshBo
     if (count == static_cast<int>(slots.size()))
       ++changes.without_slot;
     else
-      slots[count++] = {fresh[m].body, fresh[m].normal, fresh[m].overlap, fresh[m].excess, {}};
+      ++changes.begun,
+          slots[count++] = {fresh[m].body, fresh[m].normal, fresh[m].overlap, fresh[m].excess, {}};
   }
   if (count < static_cast<int>(slots.size())) slots[count].body = -1;
   return changes;

@@ -26,8 +26,9 @@ struct FacetRef {
   int facet;
 };
 
-/// What update_mesh_contacts could not do as it should.
+/// What update_mesh_contacts found new, and what it could not do as it should.
 struct MeshContactChanges {
+  int begun = 0;         ///< contacts that began: the last ones
   int without_slot = 0;  ///< contacts left out because the sphere has too many
   int born_inside =
       0;  ///< contacts that began inside a closed mesh: the sphere was squeezed through or put there

@@ -104,7 +104,7 @@ void PairList::rebuild(const Spheres& s, const std::vector<int>& order, double h
       Neighbour entry{j, 0};
       if (j < i) {
         const auto row = owned(j);
-        entry.tag = row[place_in(row, i)].tag & ~1u;
+        entry.tag = row[place_in(row, i)].tag;
         ++below_[i];
       } else {
         entry.tag = new_memory() << 1;

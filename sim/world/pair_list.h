@@ -45,7 +45,7 @@ struct RestForce {
 /// An entry of a row.
 struct Neighbour {
   std::int32_t sphere = 0;
-  std::uint32_t tag = 0;  ///< memory << 1; the lowest bit, in the owner's row only: the contact is closed
+  std::uint32_t tag = 0;  ///< memory << 1; the lowest bit: the contact is closed
   std::uint32_t memory() const { return tag >> 1; }
   bool touching() const { return (tag & 1u) != 0; }
 };
@@ -87,6 +87,15 @@ class PairList {
   /// Those that it owns: above i.
   std::span<const Neighbour> owned(int i) const { return rows_.row(i).subspan(below_[i]); }
   std::span<Neighbour> owned(int i) { return rows_.row(i).subspan(below_[i]); }
+  /// Those that others own: below i.
+  std::span<Neighbour> below(int i) { return rows_.row(i).first(below_[i]); }
+  /// Marks the contact of an entry of row i as closed or open, in both rows.
+  void turn(int i, Neighbour& entry) {
+    entry.tag ^= 1u;
+    if (entry.sphere >= rows()) return;
+    for (Neighbour& other : rows_.row(entry.sphere))
+      if (other.sphere == i) other.tag ^= 1u;
+  }
   ContactMemory& memory(const Neighbour& n) { return memory_[n.memory()]; }
   const ContactMemory& memory(const Neighbour& n) const { return memory_[n.memory()]; }
   ContactMemory* memories() { return memory_.data(); }

@@ -20,16 +20,11 @@
 
 #include "sim/io/snapshot.h"
 #include "sim/material/material.h"
+#include "sim/world/energy_watch.h"
 #include "sim/world/mesh_body.h"
 #include "sim/world/spheres.h"
 
 namespace scree {
-
-/// The run went out of bounds (not finite, or faster than anything can fall); the message says when and what
-/// to change.
-struct BlowUp : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 struct WorldSettings {
   Material material;

@@ -7,7 +7,8 @@
 namespace scree {
 namespace {
 
-constexpr int kStepsBetweenChecks = 20;  // of the stable step, of lost and runaway spheres
+constexpr int kChecksBetweenEnergies = 5;  // of the energy
+constexpr int kStepsBetweenChecks = 20;    // of the stable step, of lost and runaway spheres
 // Listings per sphere after which neighbours in space are made neighbours in memory again.
 constexpr std::int64_t kListingsBetweenSorts = 25;
 constexpr double kSkinHorizon = 30.0;  // steps that a sphere's skin should last
@@ -52,11 +53,13 @@ int RrlinearWorld::stepSimulation(btScalar span, int, btScalar) {
 
 void RrlinearWorld::sphere_pushed(int index) {
   if (changed_) return;  // it has not been sorted in yet, and is awake
+  energy_watch_.restart();
   disturbed_.assign(1, index);
   wake(disturbed_);
 }
 
 void RrlinearWorld::sphere_lost(int index) {
+  energy_watch_.restart();
   pairs_.drop(index);
   sleep_.lose(index, spheres_);
   repair_due_ = true;
@@ -71,9 +74,13 @@ void RrlinearWorld::advance_to(double end) {
       steps_to_check_ = kStepsBetweenChecks;
       check_spheres(sleep_.awake());
       if (repair_due_) repair();
+      if (checks_to_energy_-- <= 0) check_energy();
       const std::int64_t asleep = sleep_.asleep();
       sleep_.look(spheres_, sum_, pairs_, watched_, law_, time_, settings_.gravity);
-      if (sleep_.asleep() != asleep) blocks_due_ = true;
+      if (sleep_.asleep() != asleep) {
+        blocks_due_ = true;
+        energy_watch_.restart();
+      }
       dt_ = stable_step();
     }
     // The last step is cut to end on time; a remainder below a millionth of a step is rounding.
@@ -108,6 +115,7 @@ void RrlinearWorld::prepare() {
   blocks_due_ = true;
   dt_ = stable_step();
   steps_to_check_ = 0;
+  energy_watch_.restart();
 }
 
 void RrlinearWorld::find_watched() {
@@ -136,42 +144,39 @@ void RrlinearWorld::repair() {
       if (watched_[i]) watched.push_back(i);
     wake(watched);
   }
-  if (sleep_.asleep() > 0) {
-    sleep_.find_active_rows(spheres_, pairs_);
-    blocks_due_ = true;
-  }
 }
 
 void RrlinearWorld::wake(std::vector<int>& disturbed) {
   if (disturbed.empty() || !sleep_.wake(disturbed, spheres_, pairs_)) return;
   for (const int i : disturbed) {
     sum_[i] = {};  // what was added while it slept
+    double elastic = 0;
+    for (const Neighbour& n : pairs_.neighbours(i)) elastic += elastic_energy_of(i, n);
+    for (const MeshContact& c : mesh_contacts(i)) elastic += elastic_energy_of(c, i);
+    energy_watch_.add_awake(-spheres_.velocity[i].w * settings_.gravity.dot(spheres_.place[i].vec()),
+                            elastic);
     if (settings_.fixed_time_step == 0)
       dt_ = std::min(dt_, settings_.time_step_safety * std::sqrt(own_step2(i)));
   }
   blocks_due_ = true;
 }
 
-// Blocks of the active rows and of the awake spheres.
+// Blocks of the awake spheres.
 void RrlinearWorld::split_into_blocks() {
   blocks_due_ = false;
-  const std::span<const int> rows = sleep_.active_rows(), awake = sleep_.awake();
+  const std::span<const int> awake = sleep_.awake();
   block_at_.assign(spheres_.movable / kBlock + 1, -1);
-  std::size_t r = 0, a = 0, count = 0;
-  while (r < rows.size() || a < awake.size()) {
-    int block = std::numeric_limits<int>::max();
-    if (r < rows.size()) block = std::min(block, rows[r] / kBlock);
-    if (a < awake.size()) block = std::min(block, awake[a] / kBlock);
+  std::size_t a = 0, count = 0;
+  while (a < awake.size()) {
+    const int block = awake[a] / kBlock;
     if (blocks_.size() == count) blocks_.emplace_back();
     BlockWork& work = blocks_[count++];
-    const std::size_t first_row = r, first_awake = a;
-    while (r < rows.size() && rows[r] / kBlock == block) ++r;
+    const std::size_t first = a;
     while (a < awake.size() && awake[a] / kBlock == block) ++a;
     work.block = block;
     work.near_rim.clear();
     block_at_[block] = static_cast<int>(count) - 1;
-    work.rows = rows.subspan(first_row, r - first_row);
-    work.awake = awake.subspan(first_awake, a - first_awake);
+    work.awake = awake.subspan(first, a - first);
   }
   blocks_.resize(count);
 }
@@ -180,6 +185,7 @@ void RrlinearWorld::mesh_forces(BlockWork& work) {
   ContactLaw law = law_;
   FacetList::Contacts contacts;
   work.near_meshes.clear();
+  work.supplied = 0;
   for (const int i : work.awake)
     if (facets_.any(i)) work.near_meshes.push_back(i);
   constexpr std::size_t kAhead = 4;  // spheres whose contacts are on their way from memory
@@ -195,6 +201,7 @@ void RrlinearWorld::mesh_forces(BlockWork& work) {
     if (changes.without_slot > 0)
       __atomic_fetch_add(&statistics_.crowded_contacts, changes.without_slot, __ATOMIC_RELAXED);
     const Vec3 v = spheres_.velocity[i].vec(), w = spheres_.spin[i].vec();
+    int count = 0;
     for (MeshContact& c : contacts) {
       if (c.body < 0) break;
       const MeshBody& body = *meshes_[c.body];
@@ -216,7 +223,13 @@ void RrlinearWorld::mesh_forces(BlockWork& work) {
       sum_[i].force.w += 1;
       sum_[i].torque.add(arm * normal.cross(f.force) + f.rolling);
       work.overlap_ratio = std::max(work.overlap_ratio, c.overlap / place.w);
+      if (body.motion().moves())
+        work.supplied += std::max(0.0, last_dt_ * (f.force.dot(body.state().velocity_at(point)) +
+                                                   f.rolling.dot(body.state().spin)));
+      ++count;
     }
+    for (int begun = count - changes.begun; begun < count; ++begun)
+      work.supplied += elastic_energy_of(contacts[static_cast<std::size_t>(begun)], i);
     facets_.store(i, contacts);
   }
 }
@@ -256,6 +269,7 @@ void RrlinearWorld::step(double dt) {
   disturbed_.clear();
   for (BlockWork& work : blocks_) {
     repair_due_ = repair_due_ || work.left_ball;
+    energy_watch_.supply(work.supplied);
     statistics_.largest_overlap_ratio = std::max(statistics_.largest_overlap_ratio, work.overlap_ratio);
     disturbed_.insert(disturbed_.end(), work.disturbed.begin(), work.disturbed.end());
   }
@@ -318,19 +332,55 @@ double RrlinearWorld::stable_step() {
   return std::min(settings_.time_step_safety * std::sqrt(step2), travel);
 }
 
+// Elastic energy of the contact of sphere i with a neighbour, J.
+double RrlinearWorld::elastic_energy_of(int i, const Neighbour& n) const {
+  const Quad &a = spheres_.place[i], &b = spheres_.place[n.sphere];
+  const double overlap = a.w + b.w - (b.vec() - a.vec()).norm();
+  if (overlap <= 0) return 0;
+  return elastic_energy(ball_ball(law_, a.w, b.w), overlap, pairs_.memory(n).history());
+}
+
+// Elastic energy of a contact of sphere i with a mesh, J.
+double RrlinearWorld::elastic_energy_of(const MeshContact& c, int i) const {
+  return elastic_energy(ball_facet(law_, spheres_.place[i].w), c.overlap, c.history);
+}
+
+AwakeEnergy RrlinearWorld::awake_energy(const BlockWork& work) const {
+  AwakeEnergy e;
+  for (const int i : work.awake) {
+    const Quad &x = spheres_.place[i], &v = spheres_.velocity[i], &w = spheres_.spin[i];
+    e.kinetic += 0.5 * v.w * v.vec().squaredNorm() + 0.5 * w.w * w.vec().squaredNorm();
+    e.potential -= v.w * settings_.gravity.dot(x.vec());
+    e.scale += v.w * settings_.gravity.norm() * x.w;
+    for (int k = 0; k < facets_.count(i); ++k) e.elastic += elastic_energy_of(facets_.contact(i, k), i);
+  }
+  for (const int i : work.awake)
+    for (const Neighbour& n : pairs_.neighbours(i))
+      if (n.sphere > i || spheres_.asleep[n.sphere]) e.elastic += elastic_energy_of(i, n);
+  return e;
+}
+
+void RrlinearWorld::check_energy() {
+  checks_to_energy_ = kChecksBetweenEnergies - 1;
+  if (blocks_due_) split_into_blocks();
+  for_blocks([&](BlockWork& work) { work.energy = awake_energy(work); });
+  AwakeEnergy now;
+  for (const BlockWork& work : blocks_) {
+    now.kinetic += work.energy.kinetic;
+    now.elastic += work.energy.elastic;
+    now.potential += work.energy.potential;
+    now.scale += work.energy.scale;
+  }
+  energy_watch_.check(now, time_);
+}
+
 Energy RrlinearWorld::energy() const {
   Energy e = RockWorld::energy();
   for (int i = 0; i < std::min(spheres_.movable, pairs_.rows()); ++i)  // no rows before the first step
-    for (const Neighbour& n : pairs_.owned(i)) {
-      if (!n.touching()) continue;
-      const Quad &a = spheres_.place[i], &b = spheres_.place[n.sphere];
-      const double overlap = a.w + b.w - (b.vec() - a.vec()).norm();
-      if (overlap > 0)
-        e.elastic += elastic_energy(ball_ball(law_, a.w, b.w), overlap, pairs_.memory(n).history());
-    }
+    for (const Neighbour& n : pairs_.owned(i))
+      if (n.touching()) e.elastic += elastic_energy_of(i, n);
   for (int i = 0; i < facets_.rows(); ++i)
-    for (const MeshContact& c : mesh_contacts(i))
-      e.elastic += elastic_energy(ball_facet(law_, spheres_.place[i].w), c.overlap, c.history);
+    for (const MeshContact& c : mesh_contacts(i)) e.elastic += elastic_energy_of(c, i);
   return e;
 }
 

@@ -54,6 +54,10 @@ class RrlinearWorld final : public RockWorld {
   void repair();
   void wake(std::vector<int>& disturbed);
   double own_step2(int i) const;
+  double elastic_energy_of(int i, const Neighbour& n) const;
+  double elastic_energy_of(const MeshContact& c, int i) const;
+  AwakeEnergy awake_energy(const BlockWork& work) const;
+  void check_energy();
   double stable_step();
   void find_watched();
   double horizon() const;
@@ -67,7 +71,8 @@ class RrlinearWorld final : public RockWorld {
   bool repair_due_ = false;  // a sphere may have left its skin, or was lost
   double dt_ = 0;            // stable step, s
   double last_dt_ = 0;       // the step that led to the present places, s
-  int steps_to_check_ = 0;
+  int steps_to_check_ = 0, checks_to_energy_ = 0;
+  EnergyWatch energy_watch_;
   PairList pairs_;
   FacetList facets_;
   Sleep sleep_;

@@ -63,39 +63,11 @@ void Sleep::renumber(const std::vector<int>& order, Spheres& s, PairList& pairs,
   window_start_.swap(start);
   quiet_windows_.swap(quiet);
   tolerance2_.swap(tolerance2);
-  row_active_.assign(n, 0);
-  active_rows_.clear();
-  find_active_rows(s, pairs);
-}
-
-void Sleep::find_active_rows(const Spheres& s, const PairList& pairs) {
-  if (asleep_ == 0) {
-    active_rows_ = awake_;
-    return;
-  }
-  active_rows_.clear();
-  for (const int i : awake_) {
-    row_active_[i] = 1;
-    active_rows_.push_back(i);
-  }
-  const std::size_t own = active_rows_.size();
-  for (const int i : awake_)
-    for (const Neighbour& n : pairs.neighbours(i)) {
-      if (n.sphere >= i) break;
-      if (row_active_[n.sphere] || s.lost[n.sphere]) continue;
-      row_active_[n.sphere] = 1;
-      active_rows_.push_back(n.sphere);
-    }
-  for (const int i : active_rows_) row_active_[i] = 0;
-  std::sort(active_rows_.begin() + static_cast<std::ptrdiff_t>(own), active_rows_.end());
-  std::inplace_merge(active_rows_.begin(), active_rows_.begin() + static_cast<std::ptrdiff_t>(own),
-                     active_rows_.end());
 }
 
 void Sleep::lose(int i, const Spheres& s) {
   if (i < static_cast<int>(quiet_windows_.size()) && s.asleep[i]) --asleep_;
   std::erase(awake_, i);
-  std::erase(active_rows_, i);
 }
 
 // A contact that is open now has a rest force of nothing; that of a closed one is learnt at the next step.
@@ -133,9 +105,7 @@ void Sleep::look(Spheres& s, std::span<const ForceSum> sums, PairList& pairs,
     forget_rest(i, s, pairs);
     ++asleep_;
   }
-  if (kept == awake_.size()) return;
   awake_.resize(kept);
-  find_active_rows(s, pairs);
 }
 
 bool Sleep::wake(std::vector<int>& disturbed, Spheres& s, PairList& pairs) {
@@ -152,7 +122,6 @@ bool Sleep::wake(std::vector<int>& disturbed, Spheres& s, PairList& pairs) {
   }
   if (static_cast<std::ptrdiff_t>(awake_.size()) == before) return false;
   std::inplace_merge(awake_.begin(), awake_.begin() + before, awake_.end());
-  find_active_rows(s, pairs);
   return true;
 }
 

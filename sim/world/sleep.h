@@ -29,15 +29,11 @@ class Sleep {
 
   /// Spheres that move, rising.
   std::span<const int> awake() const { return awake_; }
-  /// Rows of the pair list with anything to compute, rising: owners that are awake, or have an awake partner.
-  std::span<const int> active_rows() const { return active_rows_; }
 
   /// After spheres were re-sorted or added: `order[k]` is the old index of sphere k; what is known of it
   /// follows. `stay_awake[i]`: must not sleep.
   void renumber(const std::vector<int>& order, Spheres& spheres, PairList& pairs,
                 const std::vector<std::uint8_t>& stay_awake, double time, double gravity);
-  /// Lists the active rows anew; after the pair list was repaired.
-  void find_active_rows(const Spheres& spheres, const PairList& pairs);
   /// A sphere has left the model.
   void lose(int i, const Spheres& spheres);
 
@@ -58,8 +54,7 @@ class Sleep {
   std::int64_t asleep() const { return asleep_; }
   /// Bytes held.
   std::size_t bytes() const {
-    return window_start_.capacity() * (sizeof(Vec3) + 2 + sizeof(double)) +
-           (awake_.capacity() + active_rows_.capacity()) * sizeof(int);
+    return window_start_.capacity() * (sizeof(Vec3) + 2 + sizeof(double)) + awake_.capacity() * sizeof(int);
   }
 
  private:
@@ -71,8 +66,7 @@ class Sleep {
   std::vector<Vec3> window_start_;      // places
   std::vector<std::uint8_t> quiet_windows_;
   std::vector<double> tolerance2_;  // N^2
-  std::vector<int> awake_, active_rows_;
-  std::vector<std::uint8_t> row_active_;
+  std::vector<int> awake_;
   std::int64_t asleep_ = 0;
 };
 

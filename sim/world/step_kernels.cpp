@@ -107,23 +107,9 @@ SCREE_INLINE void four_contacts(const StepView& view, Batch& batch, int at, Lane
   overlap_ratio = larger(overlap_ratio, motion.overlap / smaller(r1, r2));
 }
 
-// Takes out contacts that rest: between sleepers, or of a sleeper with a fixed ball.
-SCREE_INLINE void drop_resting(const Spheres& s, Batch& batch) {
-  int kept = 0;
-  for (int k = 0; k < batch.count; ++k) {
-    const int i = batch.owner[k], j = batch.partner[k];
-    if (s.asleep[i] && (j >= s.movable || s.asleep[j])) continue;
-    batch.owner[kept] = i;
-    batch.partner[kept] = j;
-    batch.memory[kept++] = batch.memory[k];
-  }
-  batch.count = kept;
-}
-
 SCREE_INLINE void finish_batch(const StepView& view, Batch& batch, Lanes& overlap_ratio, BlockWork& work) {
   const Spheres& s = view.spheres;
   const bool sleepers = view.sleep.asleep() > 0;
-  if (sleepers) drop_resting(s, batch);
   if (batch.count == 0) return;
   for (int k = batch.count; k < batch.count + kLanes - 1; ++k) {
     batch.owner[k] = batch.owner[batch.count - 1];
@@ -137,15 +123,17 @@ SCREE_INLINE void finish_batch(const StepView& view, Batch& batch, Lanes& overla
   for (int k = 0; k < batch.count; ++k) {
     const int i = batch.owner[k], j = batch.partner[k];
     const Lanes force = load(batch.force[k]);
-    if (sleepers && s.asleep[i] != s.asleep[j] && j < s.movable) {
+    if (sleepers && j < s.movable && s.asleep[i] != s.asleep[j]) {
       const int sleeper = s.asleep[i] ? i : j;
       if (view.sleep.disturbs(view.pairs.rest(batch.memory[k]), sleeper, batch.force[k].vec()))
         work.disturbed.push_back(sleeper);
     }
-    ForceSum& own = view.sum[i];
-    store(own.force, load(own.force) + force);
-    store(own.torque, load(own.torque) + load(batch.torque1[k]));
-    if (j >= s.movable) continue;
+    if (!sleepers || !s.asleep[i]) {
+      ForceSum& own = view.sum[i];
+      store(own.force, load(own.force) + force);
+      store(own.torque, load(own.torque) + load(batch.torque1[k]));
+    }
+    if (j >= s.movable || (sleepers && s.asleep[j])) continue;
     const Lanes back = reinterpret_cast<Lanes>(reinterpret_cast<LaneMask>(force) ^ sign_bits);
     if (j < end || !view.write_down) {
       ForceSum& other = view.sum[j];
@@ -166,20 +154,17 @@ SCREE_INLINE void finish_batch(const StepView& view, Batch& batch, Lanes& overla
   batch.count = 0;
 }
 
-// Contacts that have closed or opened since the last step; bit k is entry k.
-void close_or_open(const StepView& view, BlockWork& work, int i, Neighbour* entries, unsigned changed) {
+// A contact of row i has closed or opened since the last step.
+void close_or_open(const StepView& view, BlockWork& work, int i, Neighbour& entry) {
   const Spheres& s = view.spheres;
-  for (; changed != 0; changed &= changed - 1) {
-    Neighbour& entry = entries[std::countr_zero(changed)];
-    entry.tag ^= 1u;
-    if (entry.touching()) continue;
-    view.pairs.memory(entry) = {};
-    const int j = entry.sphere;
-    if (j >= s.movable || s.asleep[i] == s.asleep[j]) continue;
-    const int sleeper = s.asleep[i] ? i : j;
-    if (view.sleep.disturbs(view.pairs.rest(entry.memory()), sleeper, Vec3::Zero()))
-      work.disturbed.push_back(sleeper);
-  }
+  view.pairs.turn(i, entry);
+  if (entry.touching()) return;
+  view.pairs.memory(entry) = {};
+  const int j = entry.sphere;
+  if (j >= s.movable || s.asleep[i] == s.asleep[j]) return;
+  const int sleeper = s.asleep[i] ? i : j;
+  if (view.sleep.disturbs(view.pairs.rest(entry.memory()), sleeper, Vec3::Zero()))
+    work.disturbed.push_back(sleeper);
 }
 
 }  // namespace
@@ -193,7 +178,8 @@ void contact_forces(const StepView& view, BlockWork& work) {
   work.far_blocks = 0;
   work.disturbed.clear();
   for (const int i : work.awake) store(view.sum[i].force, Lanes{}), store(view.sum[i].torque, Lanes{});
-  for (const int i : work.rows) {
+  const bool sleepers = view.sleep.asleep() > 0;
+  for (const int i : work.awake) {
     const std::span<Neighbour> row = view.pairs.owned(i);
     const int count = static_cast<int>(row.size());
     const Lanes zero{}, xi = zero + place[i].x, yi = zero + place[i].y, zi = zero + place[i].z,
@@ -216,7 +202,22 @@ void contact_forces(const StepView& view, BlockWork& work) {
       }
       const unsigned before =
           ((tag[0] & 1u) | (tag[1] & 1u) << 1 | (tag[2] & 1u) << 2 | (tag[3] & 1u) << 3) & lanes;
-      if (closed != before) close_or_open(view, work, i, entry, closed ^ before);
+      for (unsigned changed = closed ^ before; changed != 0; changed &= changed - 1)
+        close_or_open(view, work, i, entry[std::countr_zero(changed)]);
+      if (batch.count >= kBatch) finish_batch(view, batch, overlap_ratio, work);
+    }
+    if (!sleepers) continue;
+    for (Neighbour& entry : view.pairs.below(i)) {
+      const int j = entry.sphere;
+      if (!s.asleep[j]) continue;
+      const double dx = place[j].x - place[i].x, dy = place[j].y - place[i].y, dz = place[j].z - place[i].z,
+                   reach = place[j].w + place[i].w;
+      const bool closed = dx * dx + dy * dy + dz * dz < reach * reach;
+      if (closed != entry.touching()) close_or_open(view, work, i, entry);
+      if (!closed) continue;
+      batch.owner[batch.count] = j;
+      batch.partner[batch.count] = i;
+      batch.memory[batch.count++] = entry.memory();
       if (batch.count >= kBatch) finish_batch(view, batch, overlap_ratio, work);
     }
   }

@@ -2,8 +2,9 @@
 // The two loops in which nearly all of the time goes: forces of contacts between spheres, and leapfrog.
 //
 // Spheres are handled in blocks of kBlock neighbours in memory (and so in space). A block first finds the
-// closed contacts that its rows own, then computes them four at a time (lanes.h), then adds forces and
-// moments one contact after another in the order of the rows. What acts on a sphere is the sum of
+// closed contacts that its awake spheres own, and those that they have with sleeping owners, then computes
+// them four at a time (lanes.h), then adds forces and moments one contact after another in the order of the
+// rows. What acts on a sphere is the sum of
 //   far:  contacts owned by spheres of earlier blocks, by rising owner, and
 //   near: contacts of its own block, by rising owner, then with meshes.
 // One thread adds far forces as it goes; several write them down block by block and add them afterwards.
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "sim/contact/rrlinear.h"
+#include "sim/world/energy_watch.h"
 #include "sim/world/pair_list.h"
 #include "sim/world/sleep.h"
 #include "sim/world/spheres.h"
@@ -33,11 +35,12 @@ struct FarForces {
 /// What one block works on and brings back.
 struct BlockWork {
   int block = 0;                 ///< spheres block * kBlock and on
-  std::span<const int> rows;     ///< active rows of the block
   std::span<const int> awake;    ///< spheres of the block that move
   std::vector<int> near_meshes;  ///< awake spheres of the block that have facets
   std::vector<int> disturbed;    ///< sleepers that one of its contacts wakes
   double overlap_ratio = 0;      ///< largest overlap over the smaller radius
+  double supplied = 0;           ///< work of tools, and energy of contacts with meshes that began (J)
+  AwakeEnergy energy;            ///< of its awake spheres, when asked for
   bool left_ball = false;        ///< a sphere has left its ball (PairList)
   std::vector<int> near_rim;     ///< those that have, or are near its rim
   double step2 = 0, travel = 0;  ///< stable step squared (s2) and the step for the longest travel (s)
@@ -58,8 +61,8 @@ struct StepView {
   bool write_down;  ///< forces that cross a border are written down instead of added
 };
 
-/// Forces of the contacts that the block's rows own, what they write down, and whom they wake; the sums of
-/// the block's awake spheres begin here, from zero.
+/// Forces of the contacts that the block's awake spheres own, or have with sleepers that own them, what they
+/// write down, and whom they wake; the sums of the block's awake spheres begin here, from zero.
 void contact_forces(const StepView& view, BlockWork& work);
 
 struct LeapfrogView {

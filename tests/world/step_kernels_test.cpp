@@ -39,7 +39,6 @@ struct Scene {
       const auto size = static_cast<std::size_t>(std::min(kBlock, spheres.movable - first));
       BlockWork& work = blocks.emplace_back();
       work.block = first / kBlock;
-      work.rows = sleep.active_rows().subspan(static_cast<std::size_t>(first), size);
       work.awake = sleep.awake().subspan(static_cast<std::size_t>(first), size);
     }
   }

@@ -183,6 +183,28 @@ TEST(World, TooFastASphereIsABlowUp) {
   EXPECT_THROW(world.advance_to(0.1), BlowUp);
 }
 
+// A central difference scheme is stable up to 2 sqrt(m / k); beyond it a heap at rest begins to boil.
+TEST(World, EnergyOutOfNothingIsABlowUp) {
+  WorldSettings settings;
+  settings.time_step_safety = 1.0;
+  RrlinearWorld stable(settings);
+  const auto fill = [](RrlinearWorld& world) {
+    world.add_spheres(rain(6, 4));
+    add_floor(world);
+  };
+  fill(stable);
+  stable.advance_to(2.0);
+  settings.fixed_time_step = 3.0 * stable.statistics().time_step_min;
+  RrlinearWorld boiling(settings);
+  fill(boiling);
+  try {
+    boiling.advance_to(2.0);
+    FAIL() << "it did not blow up";
+  } catch (const BlowUp& error) {
+    EXPECT_NE(std::string(error.what()).find("energy"), std::string::npos) << error.what();
+  }
+}
+
 TEST(World, EnergyCanBeAskedBeforeTheFirstStep) {
   WorldSettings settings;
   RrlinearWorld world(settings);
