@@ -228,8 +228,12 @@ void RrlinearWorld::mesh_forces(BlockWork& work) {
                                                    f.rolling.dot(body.state().spin)));
       ++count;
     }
-    for (int begun = count - changes.begun; begun < count; ++begun)
-      work.supplied += elastic_energy_of(contacts[static_cast<std::size_t>(begun)], i);
+    // A contact that begins deeper than the sphere moves in a step brings its energy with it.
+    for (int begun = count - changes.begun; begun < count; ++begun) {
+      const MeshContact& c = contacts[static_cast<std::size_t>(begun)];
+      const double speed = (v - meshes_[c.body]->state().velocity_at(place.vec())).norm();
+      if (c.overlap > 2.0 * speed * last_dt_) work.supplied += elastic_energy_of(c, i);
+    }
     facets_.store(i, contacts);
   }
 }
