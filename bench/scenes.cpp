@@ -156,6 +156,24 @@ Packing read_packing(const std::filesystem::path& file) {
   return packing;
 }
 
+Packing lifted_above(Packing packing, const Packing& other) {
+  constexpr double kGap = 0.3;  // m
+  double x0 = 1e300, x1 = -1e300, y0 = 1e300, y1 = -1e300, bottom = 1e300, top = -1e300;
+  for (const NewSphere& s : packing) {
+    const double r = 0.5 * s.diameter;
+    x0 = std::min(x0, s.position.x() - r), x1 = std::max(x1, s.position.x() + r);
+    y0 = std::min(y0, s.position.y() - r), y1 = std::max(y1, s.position.y() + r);
+    bottom = std::min(bottom, s.position.z() - r);
+  }
+  for (const NewSphere& s : other) {
+    const double r = 0.5 * s.diameter;
+    if (s.position.x() + r > x0 && s.position.x() - r < x1 && s.position.y() + r > y0 && s.position.y() - r < y1)
+      top = std::max(top, s.position.z() + r);
+  }
+  for (NewSphere& s : packing) s.position.z() += top + kGap - bottom;
+  return packing;
+}
+
 std::unique_ptr<RockWorld> make_scene(const std::string& name, const Packing& packing,
                                       const SceneSettings& scene) {
   if (name == "lab") {

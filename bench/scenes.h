@@ -24,6 +24,9 @@ Packing heap_packing(int count);
 void write_packing(const Packing& packing, const std::filesystem::path& file);
 Packing read_packing(const std::filesystem::path& file);
 
+/// A packing moved up until it hangs 0.3 m above what of another lies below it.
+Packing lifted_above(Packing packing, const Packing& other);
+
 struct SceneSettings {
   double time_step = 0;  ///< s; 0: scree's own
   bool sleep = false;

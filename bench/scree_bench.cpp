@@ -41,7 +41,7 @@ double closed_contacts(const scree::PairList& pairs) {
 int main(int argc, char** argv) {
   CLI::App app("Makes the start packings of the benchmarks and times scree on them.");
   app.require_subcommand(1);
-  std::string scene, file, state;
+  std::string scene, file, state, drop;
   double amount = 0, seconds = 1.0, from = 0.0;
   scree::bench::SceneSettings settings;
 
@@ -62,6 +62,7 @@ int main(int argc, char** argv) {
   run->add_option("--time-step", settings.time_step, "s; 0: scree's own");
   run->add_option("--threads", settings.threads, "worker threads");
   run->add_flag("--sleep", settings.sleep, "spheres at rest sleep");
+  run->add_option("--drop", drop, "packing that is put above the other when the clock starts");
   run->add_option("--state", state, "CSV of where the spheres are in the end");
   CLI11_PARSE(app, argc, argv);
 
@@ -76,11 +77,14 @@ int main(int argc, char** argv) {
       fmt::print("{} spheres\n", packing.size());
       return 0;
     }
-    const auto made = make_scene(scene, read_packing(file), settings);
+    const Packing packing = read_packing(file);
+    const auto made = make_scene(scene, packing, settings);
     auto* const world = dynamic_cast<scree::RrlinearWorld*>(made.get());
     world->advance_to(from);
     const auto before = world->statistics();
+    const Packing load = drop.empty() ? Packing() : lifted_above(read_packing(drop), packing);
     const double cpu = cpu_seconds(), wall = wall_seconds();
+    if (!load.empty()) world->add_spheres(load);
     world->advance_to(from + seconds);
     const double cpu_used = cpu_seconds() - cpu, wall_used = wall_seconds() - wall;
     const auto& after = world->statistics();
