@@ -5,14 +5,26 @@
 namespace scree {
 namespace {
 
-constexpr int kBatch = 96;  // contacts computed before their forces are added: they stay in the first cache
+constexpr int kBatch = 64, kOpen = 64;
 
-// Closed contacts on their way through the law.
+// Contacts on their way through the law. An entry stands in the row of its owner, or in that of its partner
+// if only this one is awake.
 struct Batch {
   int count = 0;
-  int owner[kBatch + 3 * kLanes], partner[kBatch + 3 * kLanes];
-  std::uint32_t memory[kBatch + 3 * kLanes];
-  Quad force[kBatch + 3 * kLanes], torque1[kBatch + 3 * kLanes], torque2[kBatch + 3 * kLanes];
+  int owner[kBatch + kLanes], partner[kBatch + kLanes];
+  Neighbour* entry[kBatch + kLanes];
+  SCREE_INLINE void add(int row, Neighbour& e) {
+    owner[count] = row < e.sphere ? row : e.sphere;
+    partner[count] = row < e.sphere ? e.sphere : row;
+    entry[count++] = &e;
+  }
+};
+
+// Pairs that were open in the last step.
+struct Open {
+  int count = 0;
+  int row[kOpen + kLanes];
+  Neighbour* entry[kOpen + kLanes];
 };
 
 SCREE_INLINE LaneVec3 load4(const Quad* quads, const int* index, Lanes& companion) {
@@ -22,14 +34,6 @@ SCREE_INLINE LaneVec3 load4(const Quad* quads, const int* index, Lanes& companio
   companion = d;
   return {a, b, c};
 }
-SCREE_INLINE void store4(Quad* quads, LaneVec3 v, Lanes companion) {
-  transpose(v.x_, v.y_, v.z_, companion);
-  store(quads[0], v.x_);
-  store(quads[1], v.y_);
-  store(quads[2], v.z_);
-  store(quads[3], companion);
-}
-
 static_assert(sizeof(ContactMemory) == 8 * sizeof(float));
 SCREE_INLINE LaneFloats load_half(const ContactMemory& m, int half) {
   LaneFloats v;
@@ -46,8 +50,58 @@ SCREE_INLINE LaneFloats narrow(Lanes v) {
   return __builtin_convertvector(v, LaneFloats);
 }
 
-// The law for four contacts, from `at` on.
-SCREE_INLINE void four_contacts(const StepView& view, Batch& batch, int at, Lanes& overlap_ratio) {
+// A contact of row i has closed or opened since the last step.
+void close_or_open(const StepView& view, BlockWork& work, int i, Neighbour& entry) {
+  const Spheres& s = view.spheres;
+  view.pairs.turn(i, entry);
+  if (entry.touching()) return;
+  view.pairs.memory(entry) = {};
+  const int j = entry.sphere;
+  if (j >= s.movable || s.asleep[i] == s.asleep[j]) return;
+  const int sleeper = s.asleep[i] ? i : j;
+  if (view.sleep.disturbs(view.pairs.rest(entry.memory()), sleeper, Vec3::Zero()))
+    work.disturbed.push_back(sleeper);
+}
+
+// Adds the force of contact `at` to its pieces.
+SCREE_INLINE void add_force(const StepView& view, BlockWork& work, const Batch& batch, int at, Lanes force,
+                            Lanes torque1, Lanes torque2) {
+  const Spheres& s = view.spheres;
+  const int i = batch.owner[at], j = batch.partner[at];
+  if (view.sleep.asleep() > 0 && j < s.movable && (s.asleep[i] | s.asleep[j]) != 0) {
+    const int sleeper = s.asleep[i] ? i : j;
+    if (view.sleep.disturbs(view.pairs.rest(batch.entry[at]->memory()), sleeper,
+                            Vec3(force[0], force[1], force[2])))
+      work.disturbed.push_back(sleeper);
+  }
+  if (!s.asleep[i]) {
+    ForceSum& own = view.sum[i];
+    store(own.force, load(own.force) + force);
+    store(own.torque, load(own.torque) + torque1);
+  }
+  if (j >= s.movable || s.asleep[j]) return;
+  const LaneMask sign_bits = {1L << 63, 1L << 63, 1L << 63, 0};
+  const Lanes back = reinterpret_cast<Lanes>(reinterpret_cast<LaneMask>(force) ^ sign_bits);
+  if (!view.write_down || j < (work.block + 1) * kBlock) {
+    ForceSum& other = view.sum[j];
+    store(other.force, load(other.force) + back);
+    store(other.torque, load(other.torque) + torque2);
+    return;
+  }
+  const int block = j / kBlock;
+  std::size_t to = 0;
+  while (to < work.far_blocks && work.far[to].block != block) ++to;
+  if (to == work.far_blocks) {
+    if (++work.far_blocks > work.far.size()) work.far.emplace_back();
+    work.far[to].block = block;
+    work.far[to].entries.clear();
+  }
+  work.far[to].entries.push_back({back, torque2, j});
+}
+
+// The law for four contacts from `at` on, of which the first `count` are there.
+SCREE_INLINE void four_contacts(const StepView& view, BlockWork& work, const Batch& batch, int at, int count,
+                                Lanes& overlap_ratio) {
   const Spheres& s = view.spheres;
   ContactMemory* memories = view.pairs.memories();
   const int *first = batch.owner + at, *second = batch.partner + at;
@@ -65,6 +119,7 @@ SCREE_INLINE void four_contacts(const StepView& view, Batch& batch, int at, Lane
                    pick(distinct, apart.y_ * per_distance, zero),
                    pick(distinct, apart.z_ * per_distance, one)};
   motion.overlap = r1 + r2 - distance;
+  const unsigned there = (1u << count) - 1u, opened = ~signs(-motion.overlap) & there;
   // The contact point halves the overlap. It may lie beyond the centre of a small sphere pressed into a
   // block: the arms always add up to the distance, so angular momentum is kept.
   const Lanes arm1 = r1 - 0.5 * motion.overlap, arm2 = r2 - 0.5 * motion.overlap;
@@ -80,8 +135,8 @@ SCREE_INLINE void four_contacts(const StepView& view, Batch& batch, int at, Lane
     motion.reduced_mass = zero;
   }
 
-  ContactMemory *a = memories + batch.memory[at], *b = memories + batch.memory[at + 1],
-                *c = memories + batch.memory[at + 2], *d = memories + batch.memory[at + 3];
+  ContactMemory *a = memories + batch.entry[at]->memory(), *b = memories + batch.entry[at + 1]->memory(),
+                *c = memories + batch.entry[at + 2]->memory(), *d = memories + batch.entry[at + 3]->memory();
   BasicContactHistory<Lanes> history;
   LaneFloats a0 = load_half(*a, 0), b0 = load_half(*b, 0), c0 = load_half(*c, 0), d0 = load_half(*d, 0);
   LaneFloats a1 = load_half(*a, 1), b1 = load_half(*b, 1), c1 = load_half(*c, 1), d1 = load_half(*d, 1);
@@ -99,72 +154,80 @@ SCREE_INLINE void four_contacts(const StepView& view, Batch& batch, int at, Lane
   transpose(a1, b1, c1, d1);
   store_half(*a, 0, a0), store_half(*b, 0, b0), store_half(*c, 0, c0), store_half(*d, 0, d0);
   store_half(*a, 1, a1), store_half(*b, 1, b1), store_half(*c, 1, c1), store_half(*d, 1, d1);
+  overlap_ratio = larger(overlap_ratio, motion.overlap / smaller(r1, r2));
 
   const LaneVec3 lever = motion.normal.cross(f.force);
-  store4(batch.force + at, f.force, one);
-  store4(batch.torque1 + at, arm1 * lever + f.rolling, zero);
-  store4(batch.torque2 + at, arm2 * lever - f.rolling, zero);
-  overlap_ratio = larger(overlap_ratio, motion.overlap / smaller(r1, r2));
+  LaneVec3 force = f.force, torque1 = arm1 * lever + f.rolling, torque2 = arm2 * lever - f.rolling;
+  Lanes counts = one, none1 = zero, none2 = zero;
+  transpose(force.x_, force.y_, force.z_, counts);
+  transpose(torque1.x_, torque1.y_, torque1.z_, none1);
+  transpose(torque2.x_, torque2.y_, torque2.z_, none2);
+  if (opened == 0 && count == kLanes) {
+    add_force(view, work, batch, at, force.x_, torque1.x_, torque2.x_);
+    add_force(view, work, batch, at + 1, force.y_, torque1.y_, torque2.y_);
+    add_force(view, work, batch, at + 2, force.z_, torque1.z_, torque2.z_);
+    add_force(view, work, batch, at + 3, counts, none1, none2);
+    return;
+  }
+  const Lanes forces[] = {force.x_, force.y_, force.z_, counts},
+              torques1[] = {torque1.x_, torque1.y_, torque1.z_, none1},
+              torques2[] = {torque2.x_, torque2.y_, torque2.z_, none2};
+  for (int k = 0; k < count; ++k) {
+    if ((opened >> k & 1u) == 0) {
+      add_force(view, work, batch, at + k, forces[k], torques1[k], torques2[k]);
+      continue;
+    }
+    Neighbour& entry = *batch.entry[at + k];
+    close_or_open(view, work, entry.sphere == first[k] ? second[k] : first[k], entry);
+  }
 }
 
-SCREE_INLINE void finish_batch(const StepView& view, Batch& batch, Lanes& overlap_ratio, BlockWork& work) {
-  const Spheres& s = view.spheres;
-  const bool sleepers = view.sleep.asleep() > 0;
-  if (batch.count == 0) return;
-  for (int k = batch.count; k < batch.count + kLanes - 1; ++k) {
-    batch.owner[k] = batch.owner[batch.count - 1];
-    batch.partner[k] = batch.partner[batch.count - 1];
-    batch.memory[k] = batch.memory[batch.count - 1];
+// Computes the contacts of a batch; unless it is the last of a block, up to three wait for others.
+SCREE_INLINE void compute(const StepView& view, Batch& batch, bool last, Lanes& overlap_ratio,
+                          BlockWork& work) {
+  int k = 0;
+  for (; k + kLanes <= batch.count; k += kLanes) four_contacts(view, work, batch, k, kLanes, overlap_ratio);
+  const int left = batch.count - k;
+  for (int q = 0; q < left; ++q) {
+    batch.owner[q] = batch.owner[k + q];
+    batch.partner[q] = batch.partner[k + q];
+    batch.entry[q] = batch.entry[k + q];
   }
-  for (int k = 0; k < batch.count; k += kLanes) four_contacts(view, batch, k, overlap_ratio);
-
-  const int end = (work.block + 1) * kBlock;
-  const LaneMask sign_bits = {1L << 63, 1L << 63, 1L << 63, 0};
-  for (int k = 0; k < batch.count; ++k) {
-    const int i = batch.owner[k], j = batch.partner[k];
-    const Lanes force = load(batch.force[k]);
-    if (sleepers && j < s.movable && s.asleep[i] != s.asleep[j]) {
-      const int sleeper = s.asleep[i] ? i : j;
-      if (view.sleep.disturbs(view.pairs.rest(batch.memory[k]), sleeper, batch.force[k].vec()))
-        work.disturbed.push_back(sleeper);
-    }
-    if (!sleepers || !s.asleep[i]) {
-      ForceSum& own = view.sum[i];
-      store(own.force, load(own.force) + force);
-      store(own.torque, load(own.torque) + load(batch.torque1[k]));
-    }
-    if (j >= s.movable || (sleepers && s.asleep[j])) continue;
-    const Lanes back = reinterpret_cast<Lanes>(reinterpret_cast<LaneMask>(force) ^ sign_bits);
-    if (j < end || !view.write_down) {
-      ForceSum& other = view.sum[j];
-      store(other.force, load(other.force) + back);
-      store(other.torque, load(other.torque) + load(batch.torque2[k]));
-    } else {
-      const int block = j / kBlock;
-      std::size_t at = 0;
-      while (at < work.far_blocks && work.far[at].block != block) ++at;
-      if (at == work.far_blocks) {
-        if (++work.far_blocks > work.far.size()) work.far.emplace_back();
-        work.far[at].block = block;
-        work.far[at].entries.clear();
-      }
-      work.far[at].entries.push_back({back, load(batch.torque2[k]), j});
-    }
+  batch.count = left;
+  if (!last || left == 0) return;
+  for (int q = left; q < kLanes; ++q) {
+    batch.owner[q] = batch.owner[left - 1];
+    batch.partner[q] = batch.partner[left - 1];
+    batch.entry[q] = batch.entry[left - 1];
   }
+  four_contacts(view, work, batch, 0, left, overlap_ratio);
   batch.count = 0;
 }
 
-// A contact of row i has closed or opened since the last step.
-void close_or_open(const StepView& view, BlockWork& work, int i, Neighbour& entry) {
-  const Spheres& s = view.spheres;
-  view.pairs.turn(i, entry);
-  if (entry.touching()) return;
-  view.pairs.memory(entry) = {};
-  const int j = entry.sphere;
-  if (j >= s.movable || s.asleep[i] == s.asleep[j]) return;
-  const int sleeper = s.asleep[i] ? i : j;
-  if (view.sleep.disturbs(view.pairs.rest(entry.memory()), sleeper, Vec3::Zero()))
-    work.disturbed.push_back(sleeper);
+// Which of the open pairs have closed: they join the batch.
+SCREE_INLINE void sieve(const StepView& view, Open& open, Batch& batch, Lanes& overlap_ratio,
+                        BlockWork& work) {
+  const Quad* place = view.spheres.place.data();
+  for (int q = open.count; q < open.count + kLanes - 1 && open.count > 0; ++q) {
+    open.row[q] = open.row[0];
+    open.entry[q] = open.entry[0];
+  }
+  for (int k = 0; k < open.count; k += kLanes) {
+    const int partner[kLanes] = {open.entry[k]->sphere, open.entry[k + 1]->sphere, open.entry[k + 2]->sphere,
+                                 open.entry[k + 3]->sphere};
+    Lanes r1, r2;
+    const LaneVec3 apart = load4(place, open.row + k, r1) - load4(place, partner, r2);
+    const Lanes reach = r1 + r2;
+    unsigned closed = signs(apart.squaredNorm() - reach * reach);
+    if (open.count - k < kLanes) closed &= (1u << (open.count - k)) - 1u;
+    for (; closed != 0; closed &= closed - 1) {
+      const int q = k + std::countr_zero(closed);
+      if (batch.count >= kBatch) compute(view, batch, false, overlap_ratio, work);
+      close_or_open(view, work, open.row[q], *open.entry[q]);
+      batch.add(open.row[q], *open.entry[q]);
+    }
+  }
+  open.count = 0;
 }
 
 }  // namespace
@@ -172,56 +235,32 @@ void close_or_open(const StepView& view, BlockWork& work, int i, Neighbour& entr
 SCREE_VECTORISED
 void contact_forces(const StepView& view, BlockWork& work) {
   const Spheres& s = view.spheres;
-  const Quad* place = s.place.data();
   Batch batch;
+  Open open;
   Lanes overlap_ratio{};
   work.far_blocks = 0;
   work.disturbed.clear();
   for (const int i : work.awake) store(view.sum[i].force, Lanes{}), store(view.sum[i].torque, Lanes{});
+  const auto take = [&](int row, Neighbour& entry) __attribute__((always_inline)) {
+    if (batch.count >= kBatch) compute(view, batch, false, overlap_ratio, work);
+    if (open.count >= kOpen) sieve(view, open, batch, overlap_ratio, work);
+    // Both lists get it, and one keeps it: no branch to guess wrong.
+    const int touching = static_cast<int>(entry.tag & 1u), count = batch.count;
+    batch.add(row, entry);
+    batch.count = count + touching;
+    open.row[open.count] = row;
+    open.entry[open.count] = &entry;
+    open.count += 1 - touching;
+  };
   const bool sleepers = view.sleep.asleep() > 0;
   for (const int i : work.awake) {
-    const std::span<Neighbour> row = view.pairs.owned(i);
-    const int count = static_cast<int>(row.size());
-    const Lanes zero{}, xi = zero + place[i].x, yi = zero + place[i].y, zi = zero + place[i].z,
-                        ri = zero + place[i].w;
-    for (int k = 0; k < count; k += kLanes) {
-      // Lanes behind the row's end look at what lies there (Rows::kBehind) and are masked.
-      Neighbour* const entry = row.data() + k;
-      const int partner[kLanes] = {entry[0].sphere, entry[1].sphere, entry[2].sphere, entry[3].sphere};
-      const unsigned tag[kLanes] = {entry[0].tag, entry[1].tag, entry[2].tag, entry[3].tag};
-      Lanes rj;
-      const LaneVec3 apart = load4(place, partner, rj) - LaneVec3{xi, yi, zi};
-      const Lanes reach = ri + rj;
-      const unsigned lanes = count - k < kLanes ? (1u << (count - k)) - 1u : 0xfu;
-      const unsigned closed = signs(apart.squaredNorm() - reach * reach) & lanes;
-      for (int q = 0; q < kLanes; ++q) {
-        batch.owner[batch.count] = i;
-        batch.partner[batch.count] = partner[q];
-        batch.memory[batch.count] = tag[q] >> 1;
-        batch.count += static_cast<int>(closed >> q & 1u);
-      }
-      const unsigned before =
-          ((tag[0] & 1u) | (tag[1] & 1u) << 1 | (tag[2] & 1u) << 2 | (tag[3] & 1u) << 3) & lanes;
-      for (unsigned changed = closed ^ before; changed != 0; changed &= changed - 1)
-        close_or_open(view, work, i, entry[std::countr_zero(changed)]);
-      if (batch.count >= kBatch) finish_batch(view, batch, overlap_ratio, work);
-    }
+    for (Neighbour& entry : view.pairs.owned(i)) take(i, entry);
     if (!sleepers) continue;
-    for (Neighbour& entry : view.pairs.below(i)) {
-      const int j = entry.sphere;
-      if (!s.asleep[j]) continue;
-      const double dx = place[j].x - place[i].x, dy = place[j].y - place[i].y, dz = place[j].z - place[i].z,
-                   reach = place[j].w + place[i].w;
-      const bool closed = dx * dx + dy * dy + dz * dz < reach * reach;
-      if (closed != entry.touching()) close_or_open(view, work, i, entry);
-      if (!closed) continue;
-      batch.owner[batch.count] = j;
-      batch.partner[batch.count] = i;
-      batch.memory[batch.count++] = entry.memory();
-      if (batch.count >= kBatch) finish_batch(view, batch, overlap_ratio, work);
-    }
+    for (Neighbour& entry : view.pairs.below(i))
+      if (s.asleep[entry.sphere]) take(i, entry);
   }
-  finish_batch(view, batch, overlap_ratio, work);
+  sieve(view, open, batch, overlap_ratio, work);
+  compute(view, batch, true, overlap_ratio, work);
   for (int k = 0; k < kLanes; ++k)
     if (overlap_ratio[k] > work.overlap_ratio) work.overlap_ratio = overlap_ratio[k];
 }
