@@ -24,13 +24,15 @@ struct AwakeEnergy {
 
 class EnergyWatch {
  public:
-  /// Spheres or meshes were added or taken away, or spheres fell asleep: the next check begins anew.
+  /// Spheres or meshes were added or taken away: the next check begins anew.
   void restart() { known_ = false; }
   /// A sphere woke, with this elastic energy in its contacts.
   void add_awake(double potential, double elastic) {
     supplied_ += elastic;
     before_.potential += potential;
   }
+  /// Spheres of this potential energy fell asleep; the energy of their contacts stays in the account.
+  void take_asleep(double potential) { before_.potential -= potential; }
   /// Tools did this work, or contacts began with this energy.
   void supply(double energy) { supplied_ += energy; }
 

@@ -55,6 +55,8 @@ class MeshBody {
   /// Writes pose and velocity to the Bullet body.
   void write_back();
 
+  /// Speed of its fastest point (m/s, an upper bound).
+  double fastest_point() const { return state_.velocity.norm() + state_.spin.norm() * extent_; }
   /// How far any point of the mesh may have moved since mark() (m, an upper bound).
   double moved_since_mark() const;
   void mark() { marked_ = state_.pose; }

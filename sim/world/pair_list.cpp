@@ -162,7 +162,7 @@ void PairList::find_neighbours(const Apply& apply) {
   int next = 0;  // part to apply; of the thread that applies
   std::atomic<bool> applying{false};
   const auto apply_what_is_ready = [&] {
-    while (!applying.exchange(true, std::memory_order_acquire)) {
+    while (!applying.exchange(true, std::memory_order_seq_cst)) {
       for (; next < parts && searched(next).load(std::memory_order_acquire); ++next) {
         const Part& part = parts_[next];
         int begin = 0;
@@ -191,6 +191,7 @@ void PairList::find_neighbours(const Apply& apply) {
     team_->run(parts, search);
   else
     for (int p = 0; p < parts; ++p) search(p);
+  assert(next == parts);
 }
 
 std::uint32_t PairList::new_memory() {

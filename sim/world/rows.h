@@ -10,12 +10,10 @@ namespace scree {
 template <class T>
 class Rows {
  public:
-  /// Items that may be read behind the end of any row: others', or such as have never been used.
-  static constexpr int kBehind = 3;
   /// Empties all; there will be `count` rows.
   void reset(int count) {
     rows_.assign(static_cast<std::size_t>(count), {});
-    items_.assign(kBehind, T{});
+    items_.clear();
     wasted_ = 0;
   }
   int rows() const { return static_cast<int>(rows_.size()); }
@@ -61,9 +59,9 @@ class Rows {
     if (needed <= row.capacity) return;
     wasted_ += row.capacity;
     if (wasted_ > items_.size() / 2 + 1024) compact();
-    const auto begin = static_cast<std::uint32_t>(items_.size() - kBehind);
+    const auto begin = static_cast<std::uint32_t>(items_.size());
     const std::uint32_t capacity = needed + needed / 4 + 2;
-    items_.resize(begin + capacity + kBehind);
+    items_.resize(begin + capacity);
     if (keep)
       for (int k = 0; k < row.count; ++k) items_[begin + k] = items_[row.begin + k];
     row.begin = begin;
@@ -78,7 +76,6 @@ class Rows {
       packed.insert(packed.end(), items_.begin() + row.begin, items_.begin() + row.begin + row.capacity);
       row.begin = begin;
     }
-    packed.resize(packed.size() + kBehind);
     items_.swap(packed);
     wasted_ = 0;
   }

@@ -7,13 +7,14 @@
 namespace scree {
 namespace {
 
-constexpr int kChecksBetweenEnergies = 5;  // of the energy
-constexpr int kStepsBetweenChecks = 20;    // of the stable step, of lost and runaway spheres
+constexpr int kChecksToEnergy = 5;       // checks of the state after which energy is checked, too
+constexpr int kStepsBetweenChecks = 20;  // of the stable step, of lost and runaway spheres
 // Listings per sphere after which neighbours in space are made neighbours in memory again.
 constexpr std::int64_t kListingsBetweenSorts = 25;
 constexpr double kSkinHorizon = 30.0;  // steps that a sphere's skin should last
 constexpr double kToolSkin =
     0.5;  // of the smallest radius: how far a tool moves before facets are listed anew
+constexpr double kToolTravel = 0.25;  // of the smallest radius: most that a tool may travel in one step
 constexpr double kNearGap =
     0.05;  // of the smaller radius: gap below which a contact is expected (stable step)
 constexpr double kMostTravel = 0.2;    // of the radius: most that a sphere may travel in one step
@@ -60,6 +61,12 @@ void RrlinearWorld::sphere_pushed(int index) {
 
 void RrlinearWorld::sphere_lost(int index) {
   energy_watch_.restart();
+  if (!changed_) {  // those that lay on it
+    std::vector<int> left_alone;
+    for (const Neighbour& n : pairs_.neighbours(index))
+      if (n.touching() && n.sphere < spheres_.movable) left_alone.push_back(n.sphere);
+    wake(left_alone);
+  }
   pairs_.drop(index);
   sleep_.lose(index, spheres_);
   repair_due_ = true;
@@ -70,16 +77,15 @@ void RrlinearWorld::advance_to(double end) {
   if (changed_) prepare();
   while (time_ < end) {
     if (pairs_.listings() > kListingsBetweenSorts * spheres_.movable) prepare();
-    if (steps_to_check_-- <= 0) {
-      steps_to_check_ = kStepsBetweenChecks;
+    if (--steps_to_check_ < 0) {
+      steps_to_check_ = kStepsBetweenChecks - 1;
       check_spheres(sleep_.awake());
       if (repair_due_) repair();
-      if (checks_to_energy_-- <= 0) check_energy();
-      const std::int64_t asleep = sleep_.asleep();
+      if (--checks_to_energy_ <= 0) check_energy();
       sleep_.look(spheres_, sum_, pairs_, watched_, law_, time_, settings_.gravity);
-      if (sleep_.asleep() != asleep) {
+      for (const int i : sleep_.fallen_asleep()) {
+        energy_watch_.take_asleep(potential_energy(i));
         blocks_due_ = true;
-        energy_watch_.restart();
       }
       dt_ = stable_step();
     }
@@ -100,21 +106,30 @@ void RrlinearWorld::prepare() {
     fixed_.swap(fixed);
   }
   const int n = spheres_.movable;
-  double smallest = std::numeric_limits<double>::max();
-  for (const Quad& p : spheres_.place) smallest = std::min(smallest, p.w);
+  // Sleepers do not bound the step, but a block or a tool must not pass over them in one.
+  longest_step_ = kLargestStep;
+  smallest_radius_ = 0;
+  for (int i = 0; i < n; ++i) {
+    const double radius = spheres_.place[i].w;
+    if (spheres_.lost[i] || (smallest_radius_ > 0 && radius >= smallest_radius_)) continue;
+    smallest_radius_ = radius;
+    longest_step_ =
+        std::min(kLargestStep, settings_.time_step_safety *
+                                   std::sqrt(free_step2(radius, spheres_.velocity[i].w, spheres_.spin[i].w)));
+  }
   sum_.assign(n, {});
 
   pairs_.rebuild(spheres_, order, horizon());
   // A sphere that touched a mesh which was taken away has lost its hold.
   std::vector<std::uint8_t> stay_awake = facets_.renumber(order, spheres_, meshes_);
-  facets_.set_tool_skin(spheres_.size() > 0 ? kToolSkin * smallest : 0.0);
+  facets_.set_tool_skin(kToolSkin * smallest_radius_);
   facets_.list_all(spheres_, pairs_, meshes_);
   find_watched();
   for (int i = 0; i < n; ++i) stay_awake[i] |= watched_[i];
   sleep_.renumber(order, spheres_, pairs_, stay_awake, time_, settings_.gravity.norm());
   blocks_due_ = true;
   dt_ = stable_step();
-  steps_to_check_ = 0;
+  steps_to_check_ = 1;  // contacts have their forces then
   energy_watch_.restart();
 }
 
@@ -153,8 +168,7 @@ void RrlinearWorld::wake(std::vector<int>& disturbed) {
     double elastic = 0;
     for (const Neighbour& n : pairs_.neighbours(i)) elastic += elastic_energy_of(i, n);
     for (const MeshContact& c : mesh_contacts(i)) elastic += elastic_energy_of(c, i);
-    energy_watch_.add_awake(-spheres_.velocity[i].w * settings_.gravity.dot(spheres_.place[i].vec()),
-                            elastic);
+    energy_watch_.add_awake(potential_energy(i), elastic);
     if (settings_.fixed_time_step == 0)
       dt_ = std::min(dt_, settings_.time_step_safety * std::sqrt(own_step2(i)));
   }
@@ -257,6 +271,10 @@ void RrlinearWorld::move_tools() {
     if (!mesh || !mesh->motion().moves()) continue;
     mesh->move_to(time_);
     if (mesh->moved_since_mark() > facets_.tool_skin()) repair_due_ = true;
+    const double speed = mesh->fastest_point();
+    if (settings_.fixed_time_step == 0 && smallest_radius_ > 0 &&
+        speed * dt_ > kToolTravel * smallest_radius_)
+      dt_ = kToolTravel * smallest_radius_ / speed;
   }
 }
 
@@ -289,6 +307,13 @@ void RrlinearWorld::step(double dt) {
   if (statistics_.time_step_min == 0 || dt_ < statistics_.time_step_min) statistics_.time_step_min = dt_;
 }
 
+// Square of the stable step of a sphere in flight (s2): it may meet one other at least, as stiff as a partner
+// of any size can be.
+double RrlinearWorld::free_step2(double radius, double mass, double inertia) const {
+  const ContactStiffness any = ball_ball(law_, radius, radius);
+  return std::min(mass / any.kn, inertia / (any.ks * radius * radius + any.kr));
+}
+
 // Square of the stable step of one sphere (s2): m / k and I / k_rot on its stiffest axis, over the contacts
 // that it has and those that it may have soon.
 double RrlinearWorld::own_step2(int i) const {
@@ -310,10 +335,9 @@ double RrlinearWorld::own_step2(int i) const {
     for (int k = 0; k < facets_.count(i); ++k) add(wall, facets_.contact(i, k).normal);
     if (facets_.count(i) == 0) add(wall, Vec3(0, 0, 1));
   }
-  // A sphere in free flight may meet one other at least: as stiff as a partner of any size can be.
-  const ContactStiffness any = ball_ball(law_, a.w, a.w);
-  return std::min(spheres_.velocity[i].w / std::max(shift.maxCoeff(), any.kn),
-                  spheres_.spin[i].w / std::max(turn.maxCoeff(), any.ks * a.w * a.w + any.kr));
+  return std::min({free_step2(a.w, spheres_.velocity[i].w, spheres_.spin[i].w),
+                   spheres_.velocity[i].w / std::max(shift.maxCoeff(), 1e-300),
+                   spheres_.spin[i].w / std::max(turn.maxCoeff(), 1e-300)});
 }
 
 double RrlinearWorld::stable_step() {
@@ -333,7 +357,11 @@ double RrlinearWorld::stable_step() {
     step2 = std::min(step2, work.step2);
     travel = std::min(travel, work.travel);
   }
-  return std::min(settings_.time_step_safety * std::sqrt(step2), travel);
+  return std::min({settings_.time_step_safety * std::sqrt(step2), travel, longest_step_});
+}
+
+double RrlinearWorld::potential_energy(int i) const {
+  return -spheres_.velocity[i].w * settings_.gravity.dot(spheres_.place[i].vec());
 }
 
 // Elastic energy of the contact of sphere i with a neighbour, J.
@@ -354,7 +382,7 @@ AwakeEnergy RrlinearWorld::awake_energy(const BlockWork& work) const {
   for (const int i : work.awake) {
     const Quad &x = spheres_.place[i], &v = spheres_.velocity[i], &w = spheres_.spin[i];
     e.kinetic += 0.5 * v.w * v.vec().squaredNorm() + 0.5 * w.w * w.vec().squaredNorm();
-    e.potential -= v.w * settings_.gravity.dot(x.vec());
+    e.potential += potential_energy(i);
     e.scale += v.w * settings_.gravity.norm() * x.w;
     for (int k = 0; k < facets_.count(i); ++k) e.elastic += elastic_energy_of(facets_.contact(i, k), i);
   }
@@ -365,7 +393,7 @@ AwakeEnergy RrlinearWorld::awake_energy(const BlockWork& work) const {
 }
 
 void RrlinearWorld::check_energy() {
-  checks_to_energy_ = kChecksBetweenEnergies - 1;
+  checks_to_energy_ = kChecksToEnergy;
   if (blocks_due_) split_into_blocks();
   for_blocks([&](BlockWork& work) { work.energy = awake_energy(work); });
   AwakeEnergy now;

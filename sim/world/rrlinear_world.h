@@ -3,14 +3,14 @@
 //
 // One step from t to t + dt:
 //   1. forces at x(t): pairs (PairList), meshes (mesh_contact), each through contact_step(); the displacement
-//   increments of shear and
-//      rolling are v(t - dt/2) dt, exactly what led from x(t - dt) to x(t), so memory and positions never run
-//      apart (Vyas et al., Computer Physics Communications 310, 2025);
+//      increments of shear and rolling are v(t - dt/2) dt, exactly what led from x(t - dt) to x(t), so memory
+//      and positions never run apart (Vyas et al., Computer Physics Communications 310, 2025);
 //   2. gravity and local damping; v(t + dt/2) = v(t - dt/2) + a dt; x(t + dt) = x(t) + v(t + dt/2) dt;
-//   3. tools move; spheres that may have left their skin are listed anew.
+//   3. tools move; spheres that have left their ball are listed anew.
 // The step is recomputed as the run goes on: safety * min over the spheres that move and their axes of sqrt(m
-// / k), sqrt(I / k_rot) with k summed over the contacts a sphere has and those it may soon have; a sphere
-// that wakes brings its own bound. Spheres at rest may sleep (sleep.h).
+// / k), sqrt(I / k_rot) with k summed over the contacts a sphere has and those it may soon have, and at most
+// that of the smallest sphere in flight; a sphere that wakes brings its own bound. Spheres at rest may sleep
+// (sleep.h).
 //
 // Sums over contacts run in a fixed order (step_kernels.h), so results are bitwise the same for any number of
 // threads.
@@ -53,7 +53,9 @@ class RrlinearWorld final : public RockWorld {
   void move_tools();
   void repair();
   void wake(std::vector<int>& disturbed);
+  double free_step2(double radius, double mass, double inertia) const;
   double own_step2(int i) const;
+  double potential_energy(int i) const;
   double elastic_energy_of(int i, const Neighbour& n) const;
   double elastic_energy_of(const MeshContact& c, int i) const;
   AwakeEnergy awake_energy(const BlockWork& work) const;
@@ -67,10 +69,12 @@ class RrlinearWorld final : public RockWorld {
 
   ContactLaw law_;
   Team team_;
-  bool changed_ = true;      // spheres or meshes were added or removed
-  bool repair_due_ = false;  // a sphere may have left its skin, or was lost
-  double dt_ = 0;            // stable step, s
-  double last_dt_ = 0;       // the step that led to the present places, s
+  bool changed_ = true;         // spheres or meshes were added or removed
+  bool repair_due_ = false;     // a sphere has left its ball, or was lost
+  double dt_ = 0;               // stable step, s
+  double smallest_radius_ = 0;  // of the spheres that move, m
+  double longest_step_ = 0;     // that of the smallest sphere in flight, s
+  double last_dt_ = 0;          // the step that led to the present places, s
   int steps_to_check_ = 0, checks_to_energy_ = 0;
   EnergyWatch energy_watch_;
   PairList pairs_;
@@ -81,7 +85,7 @@ class RrlinearWorld final : public RockWorld {
   std::vector<BlockWork> blocks_;      // those with anything to do
   std::vector<int> block_at_;          // by block: its place in blocks_, or -1
   std::vector<int> disturbed_, near_rim_;
-  bool blocks_due_ = true;  // who is awake, or which rows are active, has changed
+  bool blocks_due_ = true;  // who is awake has changed
 };
 
 }  // namespace scree

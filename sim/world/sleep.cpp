@@ -80,6 +80,7 @@ void Sleep::forget_rest(int i, const Spheres& s, PairList& pairs) {
 void Sleep::look(Spheres& s, std::span<const ForceSum> sums, PairList& pairs,
                  const std::vector<std::uint8_t>& stay_awake, const ContactLaw& law, double time,
                  const Vec3& gravity) {
+  fallen_asleep_.clear();
   if (!on_ || time < window_end_) return;
   window_end_ = time + window_;
   const double g = gravity.norm();
@@ -103,6 +104,7 @@ void Sleep::look(Spheres& s, std::span<const ForceSum> sums, PairList& pairs,
     s.velocity[i].set(Vec3::Zero());
     s.spin[i].set(Vec3::Zero());
     forget_rest(i, s, pairs);
+    fallen_asleep_.push_back(i);
     ++asleep_;
   }
   awake_.resize(kept);
@@ -110,9 +112,10 @@ void Sleep::look(Spheres& s, std::span<const ForceSum> sums, PairList& pairs,
 
 bool Sleep::wake(std::vector<int>& disturbed, Spheres& s, PairList& pairs) {
   std::sort(disturbed.begin(), disturbed.end());
+  disturbed.erase(std::unique(disturbed.begin(), disturbed.end()), disturbed.end());
+  std::erase_if(disturbed, [&](int i) { return !s.asleep[i]; });
   const auto before = static_cast<std::ptrdiff_t>(awake_.size());
   for (const int i : disturbed) {
-    if (!s.asleep[i]) continue;
     s.asleep[i] = 0;
     quiet_windows_[i] = 0;
     window_start_[i] = s.place[i].vec();
@@ -120,7 +123,7 @@ bool Sleep::wake(std::vector<int>& disturbed, Spheres& s, PairList& pairs) {
     awake_.push_back(i);
     --asleep_;
   }
-  if (static_cast<std::ptrdiff_t>(awake_.size()) == before) return false;
+  if (disturbed.empty()) return false;
   std::inplace_merge(awake_.begin(), awake_.begin() + before, awake_.end());
   return true;
 }

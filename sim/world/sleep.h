@@ -49,9 +49,12 @@ class Sleep {
     rest = {static_cast<float>(force.x()), static_cast<float>(force.y()), static_cast<float>(force.z()), 1};
     return false;
   }
-  /// Wakes these (in any order, each as often as it likes); true if any was asleep.
+  /// Wakes these (in any order, each as often as it likes), and leaves in `disturbed` those that were asleep,
+  /// rising. True if there were any.
   bool wake(std::vector<int>& disturbed, Spheres& spheres, PairList& pairs);
   std::int64_t asleep() const { return asleep_; }
+  /// Those that the last look() put to sleep.
+  std::span<const int> fallen_asleep() const { return fallen_asleep_; }
   /// Bytes held.
   std::size_t bytes() const {
     return window_start_.capacity() * (sizeof(Vec3) + 2 + sizeof(double)) + awake_.capacity() * sizeof(int);
@@ -66,7 +69,7 @@ class Sleep {
   std::vector<Vec3> window_start_;      // places
   std::vector<std::uint8_t> quiet_windows_;
   std::vector<double> tolerance2_;  // N^2
-  std::vector<int> awake_;
+  std::vector<int> awake_, fallen_asleep_;
   std::int64_t asleep_ = 0;
 };
 

@@ -96,7 +96,8 @@ SCREE_INLINE void add_force(const StepView& view, BlockWork& work, const Batch& 
     work.far[to].block = block;
     work.far[to].entries.clear();
   }
-  work.far[to].entries.push_back({back, torque2, j});
+  torque2[3] = j;
+  work.far[to].entries.push_back({back, torque2});
 }
 
 // The law for four contacts from `at` on, of which the first `count` are there.
@@ -277,9 +278,9 @@ void leapfrog(const LeapfrogView& view, BlockWork& work) {
   };
   for (const FarForces* far : work.inbox)
     for (const FarForces::Entry& entry : far->entries) {
-      ForceSum& sum = view.sum[entry.sphere];
+      ForceSum& sum = view.sum[entry.sphere()];
       store(sum.force, load(sum.force) + entry.force);
-      store(sum.torque, load(sum.torque) + entry.torque);
+      store(sum.torque, load(sum.torque) + entry.torque);  // the companion of a torque is not used
     }
   bool left = false;
   work.near_rim.clear();

@@ -26,8 +26,8 @@ inline constexpr int kBlock = 512;  ///< spheres a block
 struct FarForces {
   int block;  ///< the later one
   struct alignas(64) Entry {
-    Lanes force, torque;
-    int sphere;
+    Lanes force, torque;  // the torque's companion is the sphere's number
+    int sphere() const { return static_cast<int>(torque[3]); }
   };
   std::vector<Entry> entries;
 };

@@ -27,7 +27,7 @@ Team::~Team() {
 // Takes one k of the ticket's job and does it; false if there was none to take.
 bool Team::work(std::uint64_t ticket) {
   const auto k = static_cast<int>(ticket & 0xffffffffu);
-  if (k >= count_.load(std::memory_order_relaxed)) return false;
+  if (k >= count_.load(std::memory_order_acquire)) return false;
   const Call call = call_.load(std::memory_order_relaxed);
   void* const body = body_.load(std::memory_order_relaxed);
   if (ticket_.compare_exchange_strong(ticket, ticket + 1, std::memory_order_acq_rel)) {

@@ -6,15 +6,18 @@
 namespace scree {
 namespace {
 
-class LateTool : public testing::TestWithParam<double> {};
+struct Late {
+  double speed, radius;  // m/s, m
+};
+class LateTool : public testing::TestWithParam<Late> {};
 
 TEST_P(LateTool, PushesSleepersBeforeIt) {
-  const double speed = GetParam(), radius = 0.05;
+  const auto [speed, radius] = GetParam();
   WorldSettings settings;
   settings.sleep = true;
   RrlinearWorld world(settings);
   world.add_mesh(make_box({-10, -5, -1}, {20, 5, 0}), {0.44, 0.44}, Motion());
-  const auto at = [](double x) { return Pose{{x, 0, 0.01}, Quaternion::Identity()}; };
+  const auto at = [&](double x) { return Pose{{x, 0, 0.2 * radius}, Quaternion::Identity()}; };
   world.add_mesh(make_box({-0.5, -2, 0}, {0, 2, 1}), {0.44, 0.44},
                  Motion({{0.0, at(-3)}, {10.0, at(-3)}, {10.0 + 6.0 / speed, at(3)}}));
   std::vector<NewSphere> balls;
@@ -28,7 +31,9 @@ TEST_P(LateTool, PushesSleepersBeforeIt) {
   EXPECT_EQ(world.statistics().squeezed_into_walls, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Speeds, LateTool, testing::Values(0.3, 0.6, 2.0));
+INSTANTIATE_TEST_SUITE_P(Speeds, LateTool,
+                         testing::Values(Late{0.3, 0.05}, Late{0.6, 0.05}, Late{2.0, 0.05}, Late{4.0, 0.05},
+                                         Late{0.3, 0.004}));
 
 }  // namespace
 }  // namespace scree

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "sim/material/random.h"
@@ -76,11 +77,14 @@ std::map<Pair, double> touch(PairList& list, const Spheres& s, double& next) {
   return memory;
 }
 
-TEST(NeighbourGrid, QueryFindsEveryOverlapOfReachesOnce) {
+// By ratio of diameters.
+class Grid : public testing::TestWithParam<double> {};
+
+TEST_P(Grid, QueryFindsEveryOverlapOfReachesOnce) {
   const int count = 400;
-  const Spheres s = random_spheres(count, 0, 5);
+  const Spheres s = random_spheres(count, 0, 5, GetParam());
   NeighbourGrid grid;
-  grid.reset(count, 1.0 / 27, 1.0);
+  grid.reset(count, 1.0 / GetParam(), 1.0);
   Random random(6, 0, RandomPurpose::positions);
   for (int round = 0; round < 5; ++round) {
     for (int i = 0; i < count; ++i)
@@ -108,11 +112,19 @@ TEST(NeighbourGrid, QueryFindsEveryOverlapOfReachesOnce) {
   }
 }
 
-TEST(PairList, EveryOverlapIsListedOnceAndKeepsItsMemoryOverRepairs) {
+INSTANTIATE_TEST_SUITE_P(Ratios, Grid, testing::Values(27.0, 100.0));
+
+// By ratio of diameters and number of threads.
+class Pairs : public testing::TestWithParam<std::tuple<double, int>> {};
+
+TEST_P(Pairs, EveryOverlapIsListedOnceAndKeepsItsMemoryOverRepairs) {
   const int count = 300, fixed = 40;
-  Spheres s = random_spheres(count, fixed, 7);
+  const auto [ratio, threads] = GetParam();
+  Spheres s = random_spheres(count, fixed, 7, ratio);
   Random random(8, 0, RandomPurpose::positions);
+  Team team(threads);
   PairList list;
+  list.set_team(&team);
   std::vector<int> order(count, -1);
   list.rebuild(s, order, 0.0);
   double next = 1;
@@ -169,6 +181,9 @@ TEST(PairList, EveryOverlapIsListedOnceAndKeepsItsMemoryOverRepairs) {
   }
   EXPECT_GT(kept, 1000);
 }
+
+INSTANTIATE_TEST_SUITE_P(RatiosAndThreads, Pairs,
+                         testing::Combine(testing::Values(27.0, 100.0), testing::Values(1, 4)));
 
 TEST(PairList, MemoryFollowsSpheresThatAreRenumbered) {
   const int count = 200;

@@ -6,13 +6,13 @@
 
 namespace scree {
 
-// Radii from 1/27 to 1 (log-uniform) in a cube that makes them overlap here and there; the last `fixed` do
+// Radii from 1/ratio to 1 (log-uniform) in a cube that makes them overlap here and there; the last `fixed` do
 // not move.
-inline Spheres random_spheres(int count, int fixed, std::uint64_t seed) {
+inline Spheres random_spheres(int count, int fixed, std::uint64_t seed, double ratio = 27.0) {
   Random random(seed, 0, RandomPurpose::positions);
   Spheres s;
   for (int i = 0; i < count; ++i) {
-    const double radius = std::pow(27.0, -random.uniform());
+    const double radius = std::pow(ratio, -random.uniform());
     Quad place;
     place.set({random.uniform(-4, 4), random.uniform(-4, 4), random.uniform(-4, 4)});
     place.w = radius;

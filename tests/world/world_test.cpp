@@ -67,6 +67,49 @@ TEST_P(Determinism, AnyNumberOfThreadsGivesTheSameBits) {
   }
 }
 
+// A load falls on a heap that sleeps on fixed balls, then a blade comes and pushes both.
+TEST(World, SleepAndToolsGiveTheSameBitsWithAnyNumberOfThreads) {
+  std::int64_t most_asleep = 0, woken = 0;
+  const auto run = [&](int threads) {
+    WorldSettings settings;
+    settings.threads = threads;
+    settings.sleep = true;
+    auto world = std::make_unique<RrlinearWorld>(settings);
+    std::vector<NewSphere> spheres = rain(16, 4);
+    for (NewSphere& s : spheres) s.velocity.setZero();
+    for (int x = -14; x <= 14; ++x)
+      for (int y = -14; y <= 14; ++y) {
+        spheres.push_back(ball({0.4 * x, 0.4 * y, 0}, 0.2));
+        spheres.back().fixed = true;
+      }
+    world->add_spheres(spheres);
+    add_floor(*world);
+    const auto at = [](double x) { return Pose{{x, 0, 0.25}, Quaternion::Identity()}; };
+    world->add_mesh(make_box({-0.5, -6, 0}, {0, 6, 2}), {0.4, 0.4},
+                    Motion({{0.0, at(-6)}, {6.0, at(-6)}, {7.0, at(-4)}}));
+    world->advance_to(5.0);
+    most_asleep = world->statistics().asleep;
+    std::vector<NewSphere> load = rain(5, 4);
+    for (NewSphere& s : load) s.position.z() += 3;
+    world->add_spheres(load);
+    for (double time = 5.1; time < 6.95; time += 0.1) {
+      const std::int64_t before = world->statistics().asleep;
+      world->advance_to(time);
+      woken = std::max(woken, before - world->statistics().asleep);
+    }
+    return world;
+  };
+  const auto one = run(1);
+  EXPECT_GT(most_asleep, 500);  // of 1,024
+  EXPECT_GT(woken, 20);
+  EXPECT_GT(one->statistics().asleep, 100);
+  for (const int threads : {2, 4}) {
+    const auto again = run(threads);
+    expect_same_state(*one, *again);
+    EXPECT_EQ(one->statistics().steps, again->statistics().steps);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutSleep, Determinism, testing::Bool());
 
 // Whether a run is asked for in one piece or in many looks at step boundaries does not matter.
@@ -273,6 +316,8 @@ TEST(World, MemoryPerSphere) {
   }
   world.add_spheres(spheres);
   world.advance_to(0.01);
+  EXPECT_LT(static_cast<double>(world.bytes()) / 20000.0, 1500.0);
+  world.advance_to(0.1);  // rows have moved and left gaps
   EXPECT_LT(static_cast<double>(world.bytes()) / 20000.0, 1500.0);
 }
 
