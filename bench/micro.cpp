@@ -172,7 +172,7 @@ BENCHMARK_CAPTURE(leapfrog_of_spheres, one_block, false);
 
 // --- Neighbours.
 
-constexpr double kHorizon = 0.025;  // s, some 20 steps: how long a skin should last
+constexpr double kHorizon = 0.025;  // s, some 20 steps: how long a ball should last
 
 // `tiles` settled heaps side by side, sorted along the Morton curve.
 Spheres settled_spheres(int tiles) {

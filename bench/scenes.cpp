@@ -167,7 +167,8 @@ Packing lifted_above(Packing packing, const Packing& other) {
   }
   for (const NewSphere& s : other) {
     const double r = 0.5 * s.diameter;
-    if (s.position.x() + r > x0 && s.position.x() - r < x1 && s.position.y() + r > y0 && s.position.y() - r < y1)
+    if (s.position.x() + r > x0 && s.position.x() - r < x1 && s.position.y() + r > y0 &&
+        s.position.y() - r < y1)
       top = std::max(top, s.position.z() + r);
   }
   for (NewSphere& s : packing) s.position.z() += top + kGap - bottom;

@@ -1,7 +1,7 @@
 #pragma once
 // Four contacts side by side in one vector register.
 //
-// Vector types of the compiler (GCC and Clang), so the same source runs everywhere: functions that use them
+// Vector types of the compiler (GCC), so the same source runs everywhere: functions that use them
 // are compiled for several instruction sets and the best is chosen when the program starts
 // (SCREE_VECTORISED). Every lane does what one double would do, without fused operations, so the numbers are
 // the same on all of them.
