@@ -1,6 +1,5 @@
 #pragma once
 // One step of a world, held still so that its two loops can be timed alone.
-#include <algorithm>
 #include <numeric>
 #include <vector>
 
@@ -23,12 +22,7 @@ class FrozenStep {
     const int n = spheres_.movable;
     sums_.resize(n);
     sleep_.renumber(as_they_are(n), spheres_, pairs_, std::vector<std::uint8_t>(n, 0), 0.0, 9.81);
-    for (int first = 0; first < n; first += kBlock) {
-      BlockWork& work = blocks_.emplace_back();
-      const std::size_t count = std::min(kBlock, n - first);
-      work.block = first / kBlock;
-      work.awake = sleep_.awake().subspan(first, count);
-    }
+    split_into_blocks(sleep_.awake(), blocks_);
     for (int b = 0; b < blocks(); ++b) forces(b);
   }
   int blocks() const { return static_cast<int>(blocks_.size()); }

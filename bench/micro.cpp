@@ -44,33 +44,32 @@ class NanosecondsEach : public benchmark::BenchmarkReporter {
 
 constexpr int kContacts = 64;  // independent ones, in the first cache
 
-template <class Real>
-struct alignas(32) Contact {  // lanes by themselves are aligned like that in vectorised functions only
-  BasicContactStiffness<Real> stiffness;
-  BasicContactMotion<Real> motion;
-  BasicContactHistory<Real> history;
-  BasicContactForce<Real> force;
+template <class Stiffness, class Motion, class History, class Force>
+struct alignas(32) AnyContact {  // lanes by themselves are aligned like that in vectorised functions only
+  Stiffness stiffness;
+  Motion motion;
+  History history;
+  Force force;
 };
+using Contact = AnyContact<ContactStiffness, ContactMotion, ContactHistory, ContactForce>;
+using LaneContact =
+    AnyContact<BasicContactStiffness<Lanes>, LaneContactMotion, LaneContactHistory, BasicContactForce<Lanes>>;
 
-template <class Real>
-SCREE_INLINE void law_for_all(const ContactLaw& law, std::vector<Contact<Real>>& contacts) {
-  for (Contact<Real>& c : contacts) c.force = contact_step<Real>(law, c.stiffness, c.motion, c.history);
-}
-void law_one_by_one(const ContactLaw& law, std::vector<Contact<double>>& contacts) {
-  law_for_all(law, contacts);
+void law_one_by_one(const ContactLaw& law, std::vector<Contact>& contacts) {
+  for (Contact& c : contacts) c.force = contact_step(law, c.stiffness, c.motion, c.history);
 }
 SCREE_VECTORISED
-void law_by_fours(const ContactLaw& law, std::vector<Contact<Lanes>>& contacts) {
-  law_for_all(law, contacts);
+void law_by_fours(const ContactLaw& law, std::vector<LaneContact>& contacts) {
+  for (LaneContact& c : contacts) c.force = contact_step(law, c.stiffness, c.motion, c.history);
 }
 
 // One of four slides, the others stick: their memory stays as it is.
-std::vector<Contact<double>> some_contacts(const ContactLaw& law) {
+std::vector<Contact> some_contacts(const ContactLaw& law) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> share(-1.0, 1.0);
   const auto vector = [&] { return Vec3(share(random), share(random), share(random)); };
-  std::vector<Contact<double>> contacts(kContacts);
-  for (Contact<double>& c : contacts) {
+  std::vector<Contact> contacts(kContacts);
+  for (Contact& c : contacts) {
     c.stiffness = ball_ball(law, 0.3 + 0.2 * share(random), 0.3 + 0.2 * share(random));
     c.motion = {vector().normalized(), 1e-3, Vec3::Zero(), Vec3::Zero(), 0.0, 0.0, 1e-3};
     if (share(random) < -0.5) c.motion.velocity = vector(), c.motion.spin = vector();
@@ -81,31 +80,33 @@ std::vector<Contact<double>> some_contacts(const ContactLaw& law) {
   return contacts;
 }
 
-Contact<Lanes> four_of(const Contact<double>* c) {
-  Contact<Lanes> four;
-  const auto set = [](LaneVec3& to, int k, const Vec3& v) {
-    to.x_[k] = v.x(), to.y_[k] = v.y(), to.z_[k] = v.z();
-  };
+LaneContact four_of(const Contact* c) {
+  LaneContact four;
   for (int k = 0; k < kLanes; ++k) {
     four.stiffness.kn[k] = c[k].stiffness.kn;
     four.stiffness.ks[k] = c[k].stiffness.ks;
     four.stiffness.kr[k] = c[k].stiffness.kr;
     four.stiffness.rbar[k] = c[k].stiffness.rbar;
-    set(four.motion.normal, k, c[k].motion.normal);
-    set(four.motion.velocity, k, c[k].motion.velocity);
-    set(four.motion.spin, k, c[k].motion.spin);
-    set(four.history.shear, k, c[k].history.shear);
-    set(four.history.rolling, k, c[k].history.rolling);
+    const Vec3 &n = c[k].motion.normal, &v = c[k].motion.velocity, &w = c[k].motion.spin;
+    four.motion.normal.x_[k] = n.x(), four.motion.normal.y_[k] = n.y(), four.motion.normal.z_[k] = n.z();
+    const auto set = [&](LaneVector<TwinFloats>& to, const Vec3& first, const Vec3& second) {
+      to.x_[k] = static_cast<float>(first.x()), to.x_[k + kLanes] = static_cast<float>(second.x());
+      to.y_[k] = static_cast<float>(first.y()), to.y_[k + kLanes] = static_cast<float>(second.y());
+      to.z_[k] = static_cast<float>(first.z()), to.z_[k + kLanes] = static_cast<float>(second.z());
+    };
+    set(four.motion.velocity_and_spin, v, w);
+    set(four.history, c[k].history.shear, c[k].history.rolling);
     four.motion.overlap[k] = c[k].motion.overlap;
   }
-  four.motion.twist = four.motion.reduced_mass = Lanes{};
+  four.motion.twist = LaneFloats{};
+  four.motion.reduced_mass = Lanes{};
   four.motion.dt = c[0].motion.dt;
   return four;
 }
 
 void law_of_one(benchmark::State& state) {
   const ContactLaw law{Material{}};
-  std::vector<Contact<double>> contacts = some_contacts(law);
+  std::vector<Contact> contacts = some_contacts(law);
   for (auto _ : state) {
     law_one_by_one(law, contacts);
     benchmark::DoNotOptimize(contacts.data());
@@ -117,8 +118,8 @@ BENCHMARK(law_of_one);
 
 void law_of_four(benchmark::State& state) {
   const ContactLaw law{Material{}};
-  const std::vector<Contact<double>> single = some_contacts(law);
-  std::vector<Contact<Lanes>> contacts;
+  const std::vector<Contact> single = some_contacts(law);
+  std::vector<LaneContact> contacts;
   for (int k = 0; k < kContacts; k += kLanes) contacts.push_back(four_of(&single[k]));
   for (auto _ : state) {
     law_by_fours(law, contacts);
@@ -228,8 +229,7 @@ void pair_list_repair(benchmark::State& state) {
       m.way = -m.way;
     }
     state.ResumeTiming();
-    listed = pairs.move_balls(spheres, all, kHorizon).size();
-    pairs.repair(spheres);
+    listed = pairs.repair(spheres, all, kHorizon).size();
   }
   each(state, static_cast<double>(listed),
        fmt::format("sphere listed anew; {} of {} spheres", listed, spheres.size()));

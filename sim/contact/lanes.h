@@ -25,8 +25,11 @@ inline constexpr int kLanes = 4;
 typedef double Lanes __attribute__((vector_size(32)));
 typedef long LaneMask __attribute__((vector_size(32)));
 typedef float LaneFloats __attribute__((vector_size(16)));
+/// Two sets of four side by side, each in its half of a register.
+typedef float TwinFloats __attribute__((vector_size(32)));
+typedef int TwinMask __attribute__((vector_size(32)));
 
-// The same words for one double and for four.
+// The same words for one number and for several.
 SCREE_INLINE double root(double a) {
   return std::sqrt(a);
 }
@@ -35,10 +38,18 @@ SCREE_INLINE Lanes root(Lanes a) {
   for (int k = 0; k < kLanes; ++k) r[k] = __builtin_sqrt(a[k]);
   return r;
 }
+SCREE_INLINE TwinFloats root(TwinFloats a) {
+  TwinFloats r;
+  for (int k = 0; k < 2 * kLanes; ++k) r[k] = __builtin_sqrtf(a[k]);
+  return r;
+}
 SCREE_INLINE double pick(bool which, double yes, double no) {
   return which ? yes : no;
 }
 SCREE_INLINE Lanes pick(LaneMask which, Lanes yes, Lanes no) {
+  return which ? yes : no;
+}
+SCREE_INLINE TwinFloats pick(TwinMask which, TwinFloats yes, TwinFloats no) {
   return which ? yes : no;
 }
 /// Bit k: lane k is negative.
@@ -62,53 +73,59 @@ template <class Real>
 SCREE_INLINE Real larger(Real a, Real b) {
   return pick(a < b, b, a);
 }
-template <class Real>
-SCREE_INLINE Real all_lanes(double a) {
-  return Real{} + a;
-}
 
-/// Four vectors side by side, with the few operations that the contact law needs.
-struct LaneVec3 {
-  Lanes x_, y_, z_;
-  SCREE_INLINE const Lanes& x() const { return x_; }
-  SCREE_INLINE const Lanes& y() const { return y_; }
-  SCREE_INLINE const Lanes& z() const { return z_; }
-  SCREE_INLINE Lanes dot(const LaneVec3& b) const { return x_ * b.x_ + y_ * b.y_ + z_ * b.z_; }
-  SCREE_INLINE Lanes squaredNorm() const { return dot(*this); }
-  SCREE_INLINE LaneVec3 cross(const LaneVec3& b) const {
+/// Several vectors side by side, with the few operations that the contact law needs.
+template <class Real>
+struct LaneVector {
+  Real x_, y_, z_;
+  SCREE_INLINE Real dot(const LaneVector& b) const { return x_ * b.x_ + y_ * b.y_ + z_ * b.z_; }
+  SCREE_INLINE Real squaredNorm() const { return dot(*this); }
+  SCREE_INLINE LaneVector cross(const LaneVector& b) const {
     return {y_ * b.z_ - z_ * b.y_, z_ * b.x_ - x_ * b.z_, x_ * b.y_ - y_ * b.x_};
   }
+  SCREE_INLINE LaneVector operator+(const LaneVector& b) const { return {x_ + b.x_, y_ + b.y_, z_ + b.z_}; }
+  SCREE_INLINE LaneVector operator-(const LaneVector& b) const { return {x_ - b.x_, y_ - b.y_, z_ - b.z_}; }
+  SCREE_INLINE LaneVector operator*(Real b) const { return {x_ * b, y_ * b, z_ * b}; }
 };
-SCREE_INLINE LaneVec3 operator+(const LaneVec3& a, const LaneVec3& b) {
-  return {a.x_ + b.x_, a.y_ + b.y_, a.z_ + b.z_};
-}
-SCREE_INLINE LaneVec3 operator-(const LaneVec3& a, const LaneVec3& b) {
-  return {a.x_ - b.x_, a.y_ - b.y_, a.z_ - b.z_};
-}
-SCREE_INLINE LaneVec3 operator*(const LaneVec3& a, Lanes b) {
-  return {a.x_ * b, a.y_ * b, a.z_ * b};
-}
-SCREE_INLINE LaneVec3 operator*(Lanes b, const LaneVec3& a) {
-  return a * b;
-}
+using LaneVec3 = LaneVector<Lanes>;
 
 /// The vector type that goes with a number type, and back.
 template <class Real>
 struct VectorOf {
-  using type = Vec3;
+  using type = LaneVector<Real>;
 };
 template <>
-struct VectorOf<Lanes> {
-  using type = LaneVec3;
+struct VectorOf<double> {
+  using type = Vec3;
 };
 template <class Vector>
 struct RealOf {
   using type = double;
 };
-template <>
-struct RealOf<LaneVec3> {
-  using type = Lanes;
+template <class Real>
+struct RealOf<LaneVector<Real>> {
+  using type = Real;
 };
+
+// Between single and double precision, and between halves and wholes.
+SCREE_INLINE Lanes wide(LaneFloats v) {
+  return __builtin_convertvector(v, Lanes);
+}
+SCREE_INLINE LaneFloats narrow(Lanes v) {
+  return __builtin_convertvector(v, LaneFloats);
+}
+SCREE_INLINE LaneVector<LaneFloats> narrow(const LaneVec3& v) {
+  return {narrow(v.x_), narrow(v.y_), narrow(v.z_)};
+}
+SCREE_INLINE TwinFloats twin(LaneFloats first, LaneFloats second) {
+  return __builtin_shufflevector(first, second, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+SCREE_INLINE LaneFloats first(TwinFloats v) {
+  return __builtin_shufflevector(v, v, 0, 1, 2, 3);
+}
+SCREE_INLINE LaneFloats second(TwinFloats v) {
+  return __builtin_shufflevector(v, v, 4, 5, 6, 7);
+}
 
 // Quads in memory and lanes in registers.
 SCREE_INLINE Lanes load(const Quad& q) {
@@ -119,7 +136,17 @@ SCREE_INLINE Lanes load(const Quad& q) {
 SCREE_INLINE void store(Quad& q, Lanes v) {
   __builtin_memcpy(__builtin_assume_aligned(&q, sizeof(Quad)), &v, sizeof v);
 }
-/// Turns four quads into their x, y, z, w, or back.
+/// Turns four quads into their x, y, z, w, or back; of twins both halves.
+SCREE_INLINE void transpose(TwinFloats& a, TwinFloats& b, TwinFloats& c, TwinFloats& d) {
+  const TwinFloats t0 = __builtin_shuffle(a, b, TwinMask{0, 8, 1, 9, 4, 12, 5, 13}),
+                   t1 = __builtin_shuffle(a, b, TwinMask{2, 10, 3, 11, 6, 14, 7, 15}),
+                   t2 = __builtin_shuffle(c, d, TwinMask{0, 8, 1, 9, 4, 12, 5, 13}),
+                   t3 = __builtin_shuffle(c, d, TwinMask{2, 10, 3, 11, 6, 14, 7, 15});
+  a = __builtin_shuffle(t0, t2, TwinMask{0, 1, 8, 9, 4, 5, 12, 13});
+  b = __builtin_shuffle(t0, t2, TwinMask{2, 3, 10, 11, 6, 7, 14, 15});
+  c = __builtin_shuffle(t1, t3, TwinMask{0, 1, 8, 9, 4, 5, 12, 13});
+  d = __builtin_shuffle(t1, t3, TwinMask{2, 3, 10, 11, 6, 7, 14, 15});
+}
 SCREE_INLINE void transpose(LaneFloats& a, LaneFloats& b, LaneFloats& c, LaneFloats& d) {
   typedef int Index __attribute__((vector_size(16)));
   const LaneFloats t0 = __builtin_shuffle(a, b, Index{0, 4, 1, 5}),

@@ -61,29 +61,21 @@ inline ContactStiffness ball_facet(const ContactLaw& law, double r1) {
 }
 
 /// What a contact remembers from step to step, as acting on piece 1.
-template <class Real>
-struct BasicContactHistory {
-  using Vector = typename VectorOf<Real>::type;
-  Vector shear;    ///< N
-  Vector rolling;  ///< N m
-};
-struct ContactHistory : BasicContactHistory<double> {
-  ContactHistory() : BasicContactHistory<double>{Vec3::Zero(), Vec3::Zero()} {}
+struct ContactHistory {
+  Vec3 shear = Vec3::Zero();    ///< N
+  Vec3 rolling = Vec3::Zero();  ///< N m
 };
 
 /// How the two pieces move against each other over one step.
-template <class Real>
-struct BasicContactMotion {
-  using Vector = typename VectorOf<Real>::type;
-  Vector normal;      ///< from 1 to 2, unit
-  Real overlap;       ///< m, positive
-  Vector velocity;    ///< of 2 against 1 at the contact point, m/s
-  Vector spin;        ///< of 2 against 1, rad/s
-  Real twist;         ///< mean spin of the two about the normal, rad/s
-  Real reduced_mass;  ///< m1 m2 / (m1 + m2), kg; used by the dashpots only
-  double dt;          ///< s
+struct ContactMotion {
+  Vec3 normal;          ///< from 1 to 2, unit
+  double overlap;       ///< m, positive
+  Vec3 velocity;        ///< of 2 against 1 at the contact point, m/s
+  Vec3 spin;            ///< of 2 against 1, rad/s
+  double twist;         ///< mean spin of the two about the normal, rad/s
+  double reduced_mass;  ///< m1 m2 / (m1 + m2), kg; used by the dashpots only
+  double dt;            ///< s
 };
-using ContactMotion = BasicContactMotion<double>;
 
 /// Force and rolling moment on piece 1; piece 2 gets the opposite.
 template <class Real>
@@ -98,49 +90,92 @@ using ContactForce = BasicContactForce<double>;
 /// normal by `angle` (small; atan(angle) to be exact), that of the mean spin of the two, as in PFC3D.
 template <class Vector, class Real = typename RealOf<Vector>::type>
 SCREE_INLINE Vector turned_with_contact(const Vector& v, const Vector& n, std::type_identity_t<Real> angle) {
-  const Vector flat = v - n * v.dot(n);
-  const Real flat2 = flat.squaredNorm(), full2 = v.squaredNorm();
+  const Real one = Real{} + 1, up = v.dot(n), full2 = v.squaredNorm();
+  const Vector flat = v - n * up;
+  // As a difference: a memory that lies in the plane keeps its length to the last bit.
+  const Real flat2 = full2 - up * up;
   // A memory that stands on the new plane, or none at all, leaves nothing.
-  const auto lies = flat2 > 1e-24 * full2;
-  const Real lengthened = 1.0 + angle * angle;  // squared, by the twist
-  return (flat + n.cross(flat) * angle) * pick(lies, root(full2 / (flat2 * lengthened)), Real{});
+  const auto lies = flat2 > full2 * 1e-6f;
+  return (flat + n.cross(flat) * angle) * pick(lies, root(full2 / (flat2 * (one + angle * angle))), Real{});
+}
+
+/// One step of a memory: turned with the contact, what the pieces have moved against each other in the
+/// contact plane added, cut off at the limit. `slips`: it was cut off.
+template <class Vector, class Real, class Mask>
+SCREE_INLINE Vector carried_on(const Vector& memory, const Vector& normal, Real angle, const Vector& added,
+                               Real limit, Mask& slips) {
+  const Vector whole = turned_with_contact(memory, normal, angle) + added;
+  const Real size2 = whole.squaredNorm();
+  slips = size2 > limit * limit;
+  return whole * pick(slips, limit / root(size2), Real{} + 1);
 }
 
 /// One step of the law; updates the history.
-template <class Real>
-SCREE_INLINE BasicContactForce<Real> contact_step(const ContactLaw& law, const BasicContactStiffness<Real>& k,
-                                                  const BasicContactMotion<Real>& c,
-                                                  BasicContactHistory<Real>& history) {
-  using Vector = typename VectorOf<Real>::type;
-  const Real one = all_lanes<Real>(1.0);
-  const Vector& n = c.normal;
-  Real fn = k.kn * c.overlap;
-  const Real vn = c.velocity.dot(n);
-  const Vector slip = c.velocity - n * vn;
-  if (law.beta_n > 0.0) fn = larger(fn - 2.0 * law.beta_n * root(c.reduced_mass * k.kn) * vn, Real{});
-  const Real twist_angle = c.twist * c.dt;
+inline ContactForce contact_step(const ContactLaw& law, const ContactStiffness& k, const ContactMotion& c,
+                                 ContactHistory& history) {
+  const Vec3& n = c.normal;
+  const double vn = c.velocity.dot(n), angle = c.twist * c.dt;
+  const Vec3 slip = c.velocity - n * vn, bend = c.spin - n * c.spin.dot(n);
+  double fn = k.kn * c.overlap;
+  if (law.beta_n > 0.0) fn = larger(fn - 2.0 * law.beta_n * root(c.reduced_mass * k.kn) * vn, 0.0);
 
-  Vector shear = turned_with_contact(history.shear, n, twist_angle) + slip * Real(k.ks * c.dt);
-  const Real shear_limit = law.mu * fn, shear2 = shear.squaredNorm();
-  const auto slides = shear2 > shear_limit * shear_limit;
-  shear = shear * pick(slides, shear_limit / root(shear2), one);
-  history.shear = shear;
-  if (law.beta_s > 0.0)
-    shear = shear + slip * pick(slides, Real{}, 2.0 * law.beta_s * root(c.reduced_mass * k.ks));
+  bool slides, rolls;
+  history.shear = carried_on<Vec3>(history.shear, n, angle, slip * (k.ks * c.dt), law.mu * fn, slides);
+  history.rolling =
+      carried_on<Vec3>(history.rolling, n, angle, bend * (k.kr * c.dt), law.mu_r * k.rbar * fn, rolls);
 
-  const Vector bend = c.spin - n * c.spin.dot(n);
-  Vector rolling = turned_with_contact(history.rolling, n, twist_angle) + bend * Real(k.kr * c.dt);
-  const Real rolling_limit = law.mu_r * k.rbar * fn, rolling2 = rolling.squaredNorm();
-  const auto rolls = rolling2 > rolling_limit * rolling_limit;
-  rolling = rolling * pick(rolls, rolling_limit / root(rolling2), one);
-  history.rolling = rolling;
+  Vec3 shear = history.shear;
+  if (law.beta_s > 0.0 && !slides) shear += slip * (2.0 * law.beta_s * root(c.reduced_mass * k.ks));
+  return {shear - n * fn, history.rolling};
+}
 
-  return {shear - n * fn, rolling};
+// The same for four contacts side by side. Overlap, normal force and the sums stay in double precision. What
+// is remembered is kept in single precision (ContactMemory), and so is what is added to it: motion in the
+// contact plane, shear in one half of a register beside rolling in the other.
+
+/// Motion of four contacts.
+struct LaneContactMotion {
+  LaneVec3 normal;
+  Lanes overlap;
+  LaneVector<TwinFloats> velocity_and_spin;  ///< of 2 against 1
+  LaneFloats twist;
+  Lanes reduced_mass;
+  double dt;
+};
+/// Shear forces and rolling moments of four contacts.
+using LaneContactHistory = LaneVector<TwinFloats>;
+
+SCREE_INLINE BasicContactForce<Lanes> contact_step(const ContactLaw& law,
+                                                   const BasicContactStiffness<Lanes>& k,
+                                                   const LaneContactMotion& c, LaneContactHistory& history) {
+  const LaneVector<LaneFloats> n = narrow(c.normal);
+  const LaneVector<TwinFloats> nn = {twin(n.x_, n.x_), twin(n.y_, n.y_), twin(n.z_, n.z_)};
+  const LaneFloats angle = c.twist * static_cast<float>(c.dt);
+  const TwinFloats along = c.velocity_and_spin.dot(nn);
+  const LaneVector<TwinFloats> slip_and_bend = c.velocity_and_spin - nn * along;
+  Lanes fn = k.kn * c.overlap;
+  if (law.beta_n > 0.0)
+    fn = larger(fn - 2.0 * law.beta_n * root(c.reduced_mass * k.kn) * wide(first(along)), Lanes{});
+
+  const TwinFloats stiffness = twin(narrow(k.ks * c.dt), narrow(k.kr * c.dt)),
+                   limit = twin(narrow(law.mu * fn), narrow(law.mu_r * k.rbar * fn));
+  TwinMask slips;
+  history = carried_on(history, nn, twin(angle, angle), slip_and_bend * stiffness, limit, slips);
+
+  LaneVec3 shear = {wide(first(history.x_)), wide(first(history.y_)), wide(first(history.z_))};
+  if (law.beta_s > 0.0) {
+    const Lanes sticks = wide(first(pick(slips, TwinFloats{}, TwinFloats{} + 1))),
+                damping = sticks * (2.0 * law.beta_s * root(c.reduced_mass * k.ks));
+    shear = shear + LaneVec3{wide(first(slip_and_bend.x_)), wide(first(slip_and_bend.y_)),
+                             wide(first(slip_and_bend.z_))} *
+                        damping;
+  }
+  return {shear - c.normal * fn,
+          {wide(second(history.x_)), wide(second(history.y_)), wide(second(history.z_))}};
 }
 
 /// Elastic energy held by a contact (J).
-inline double elastic_energy(const ContactStiffness& k, double overlap,
-                             const BasicContactHistory<double>& h) {
+inline double elastic_energy(const ContactStiffness& k, double overlap, const ContactHistory& h) {
   return 0.5 * k.kn * overlap * overlap + 0.5 * h.shear.squaredNorm() / k.ks +
          0.5 * h.rolling.squaredNorm() / k.kr;
 }

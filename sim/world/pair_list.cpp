@@ -40,11 +40,10 @@ Quad PairList::ball(int i, const Spheres& s, double horizon) const {
 // True if sphere i is about to leave its ball: most of the way out, and gone in less than `horizon` at its
 // present velocity.
 bool PairList::leaves_soon(int i, const Spheres& s, double horizon) const {
-  const Quad& at = grid_.site(i);
-  const Vec3 from = s.place[i].vec() - at.vec();
-  const double skin = at.w - s.place[i].w, skin2 = skin * skin, d2 = from.squaredNorm();
-  if (d2 <= kNearRim2 * skin2) return false;
-  return d2 > skin2 || (from + horizon * s.velocity[i].vec()).squaredNorm() > skin2;
+  const double now = way_out2(i, s.place[i]);
+  if (now <= kNearRim2 || now > 1) return now > 1;
+  const Vec3 later = s.place[i].vec() + horizon * s.velocity[i].vec();
+  return way_out2(i, {later.x(), later.y(), later.z(), s.place[i].w}) > 1;
 }
 
 void PairList::rebuild(const Spheres& s, const std::vector<int>& order, double horizon) {
@@ -116,8 +115,7 @@ void PairList::rebuild(const Spheres& s, const std::vector<int>& order, double h
   });
 }
 
-const std::vector<int>& PairList::move_balls(const Spheres& s, std::span<const int> near_rim,
-                                             double horizon) {
+const std::vector<int>& PairList::repair(const Spheres& s, std::span<const int> near_rim, double horizon) {
   listed_.clear();
   balls_.clear();
   std::sort(dropped_.begin(), dropped_.end());
@@ -133,11 +131,8 @@ const std::vector<int>& PairList::move_balls(const Spheres& s, std::span<const i
   }
   grid_.place(listed_, balls_, team_);
   listings_ += static_cast<std::int64_t>(listed_.size());
-  return listed_;
-}
-
-void PairList::repair(const Spheres& s) {
   find_neighbours([&](int i, std::span<const int> found) { apply(i, found, s.movable); });
+  return listed_;
 }
 
 void PairList::find_neighbours(int i, std::vector<int>& found) const {

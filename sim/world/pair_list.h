@@ -27,11 +27,10 @@ namespace scree {
 /// cent of the force a step, is far below what local damping leaves unbalanced (Rest tests), and half of the
 /// memory traffic of a step is saved.
 struct alignas(32) ContactMemory {
-  float shear[3] = {0, 0, 0};    ///< N
-  float rolling[3] = {0, 0, 0};  ///< N m
-  float unused[2] = {0, 0};
+  float shear[4] = {0, 0, 0, 0};    ///< N; the last is not used
+  float rolling[4] = {0, 0, 0, 0};  ///< N m; the last is not used
 
-  BasicContactHistory<double> history() const {
+  ContactHistory history() const {
     return {{shear[0], shear[1], shear[2]}, {rolling[0], rolling[1], rolling[2]}};
   }
 };
@@ -71,12 +70,10 @@ class PairList {
     return (dx * dx + dy * dy + dz * dz) / (skin * skin);
   }
 
-  /// Finds those of `near_rim` (way_out2() > kNearRim2) that have left their ball or soon will, and gives
-  /// them new ones. `horizon` (s): balls hold what a sphere moves in this time. Returns these spheres in the
-  /// order of `near_rim`; valid until the next call. repair() must follow.
-  const std::vector<int>& move_balls(const Spheres& spheres, std::span<const int> near_rim, double horizon);
-  /// Brings the rows of the spheres whose balls have moved up to date.
-  void repair(const Spheres& spheres);
+  /// Gives those of `near_rim` (way_out2() > kNearRim2) that have left their ball or soon will new ones, and
+  /// brings their rows up to date. `horizon` (s): balls hold what a sphere moves in this time. Returns these
+  /// spheres in the order of `near_rim`; valid until the next call.
+  const std::vector<int>& repair(const Spheres& spheres, std::span<const int> near_rim, double horizon);
 
   /// Takes a sphere out for good, at the next repair.
   void drop(int i) { dropped_.push_back(i); }
@@ -87,8 +84,7 @@ class PairList {
   /// Those that it owns: above i.
   std::span<const Neighbour> owned(int i) const { return rows_.row(i).subspan(below_[i]); }
   std::span<Neighbour> owned(int i) { return rows_.row(i).subspan(below_[i]); }
-  /// Those that others own: below i.
-  std::span<Neighbour> below(int i) { return rows_.row(i).first(below_[i]); }
+  std::span<Neighbour> row(int i) { return rows_.row(i); }
   /// Marks the contact of an entry of row i as closed or open, in both rows.
   void turn(int i, Neighbour& entry) {
     entry.tag ^= 1u;

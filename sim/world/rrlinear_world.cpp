@@ -145,12 +145,11 @@ void RrlinearWorld::repair() {
   near_rim_.clear();
   for (const BlockWork& work : blocks_)
     near_rim_.insert(near_rim_.end(), work.near_rim.begin(), work.near_rim.end());
-  const std::vector<int>& listed = pairs_.move_balls(spheres_, near_rim_, horizon());
+  const std::vector<int>& listed = pairs_.repair(spheres_, near_rim_, horizon());
   bool tools_moved = false;
   for (const auto& mesh : meshes_)
     if (mesh && mesh->moved_since_mark() > facets_.tool_skin()) tools_moved = true;
   if (!listed.empty() || tools_moved) facets_.list(listed, tools_moved, spheres_, pairs_, meshes_);
-  pairs_.repair(spheres_);
   if (!sleep_.on()) return;
   if (tools_moved) {
     find_watched();
@@ -175,24 +174,11 @@ void RrlinearWorld::wake(std::vector<int>& disturbed) {
   blocks_due_ = true;
 }
 
-// Blocks of the awake spheres.
-void RrlinearWorld::split_into_blocks() {
+void RrlinearWorld::split_awake() {
   blocks_due_ = false;
-  const std::span<const int> awake = sleep_.awake();
+  split_into_blocks(sleep_.awake(), blocks_);
   block_at_.assign(spheres_.movable / kBlock + 1, -1);
-  std::size_t a = 0, count = 0;
-  while (a < awake.size()) {
-    const int block = awake[a] / kBlock;
-    if (blocks_.size() == count) blocks_.emplace_back();
-    BlockWork& work = blocks_[count++];
-    const std::size_t first = a;
-    while (a < awake.size() && awake[a] / kBlock == block) ++a;
-    work.block = block;
-    work.near_rim.clear();
-    block_at_[block] = static_cast<int>(count) - 1;
-    work.awake = awake.subspan(first, a - first);
-  }
-  blocks_.resize(count);
+  for (std::size_t k = 0; k < blocks_.size(); ++k) block_at_[blocks_[k].block] = static_cast<int>(k);
 }
 
 void RrlinearWorld::mesh_forces(BlockWork& work) {
@@ -232,7 +218,7 @@ void RrlinearWorld::mesh_forces(BlockWork& work) {
       motion.twist = 0.5 * (w + body.state().spin).dot(normal);
       motion.reduced_mass = spheres_.velocity[i].w;
       motion.dt = last_dt_;
-      const ContactForce f = contact_step<double>(law, ball_facet(law, place.w), motion, c.history);
+      const ContactForce f = contact_step(law, ball_facet(law, place.w), motion, c.history);
       sum_[i].force.add(f.force);
       sum_[i].force.w += 1;
       sum_[i].torque.add(arm * normal.cross(f.force) + f.rolling);
@@ -253,7 +239,7 @@ void RrlinearWorld::mesh_forces(BlockWork& work) {
 }
 
 void RrlinearWorld::forces() {
-  if (blocks_due_) split_into_blocks();
+  if (blocks_due_) split_awake();
   const StepView view{spheres_, pairs_, sleep_, law_, last_dt_, sum_.data(), several_threads()};
   for_blocks([&](BlockWork& work) {
     contact_forces(view, work);
@@ -342,7 +328,7 @@ double RrlinearWorld::own_step2(int i) const {
 
 double RrlinearWorld::stable_step() {
   if (settings_.fixed_time_step > 0) return settings_.fixed_time_step;
-  if (blocks_due_) split_into_blocks();
+  if (blocks_due_) split_awake();
   for_blocks([&](BlockWork& work) {
     work.step2 = kLargestStep * kLargestStep;
     work.travel = kLargestStep;
@@ -385,16 +371,15 @@ AwakeEnergy RrlinearWorld::awake_energy(const BlockWork& work) const {
     e.potential += potential_energy(i);
     e.scale += v.w * settings_.gravity.norm() * x.w;
     for (int k = 0; k < facets_.count(i); ++k) e.elastic += elastic_energy_of(facets_.contact(i, k), i);
-  }
-  for (const int i : work.awake)
     for (const Neighbour& n : pairs_.neighbours(i))
       if (n.sphere > i || spheres_.asleep[n.sphere]) e.elastic += elastic_energy_of(i, n);
+  }
   return e;
 }
 
 void RrlinearWorld::check_energy() {
   checks_to_energy_ = kChecksToEnergy;
-  if (blocks_due_) split_into_blocks();
+  if (blocks_due_) split_awake();
   for_blocks([&](BlockWork& work) { work.energy = awake_energy(work); });
   AwakeEnergy now;
   for (const BlockWork& work : blocks_) {

@@ -47,7 +47,7 @@ class RrlinearWorld final : public RockWorld {
  private:
   void prepare();
   void step(double dt);
-  void split_into_blocks();
+  void split_awake();
   void forces();
   void mesh_forces(BlockWork& work);
   void move_tools();

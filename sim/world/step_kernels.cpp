@@ -1,30 +1,33 @@
 #include "sim/world/step_kernels.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace scree {
 namespace {
 
-constexpr int kBatch = 64, kOpen = 64;
+constexpr int kFull = 64;  // pairs that are worth a start
+constexpr std::size_t kAhead = 8;
+constexpr std::size_t kTake = 64;  // entries of a row that are taken at a time
 
-// Contacts on their way through the law. An entry stands in the row of its owner, or in that of its partner
-// if only this one is awake.
-struct Batch {
+// Pairs on their way. An entry stands in the row of its owner, or in that of its partner if only this one is
+// awake.
+template <int kRoom>
+struct Queue {
   int count = 0;
-  int owner[kBatch + kLanes], partner[kBatch + kLanes];
-  Neighbour* entry[kBatch + kLanes];
-  SCREE_INLINE void add(int row, Neighbour& e) {
-    owner[count] = row < e.sphere ? row : e.sphere;
-    partner[count] = row < e.sphere ? e.sphere : row;
-    entry[count++] = &e;
+  int row[kRoom];
+  Neighbour* entry[kRoom];
+  SCREE_INLINE void put(int at, int in_row, Neighbour& e) { row[at] = in_row, entry[at] = &e; }
+  // Repeats the last one up to a full set of lanes.
+  SCREE_INLINE void pad() {
+    if (count == 0) return;
+    for (int k = count; k % kLanes != 0; ++k) put(k, row[count - 1], *entry[count - 1]);
   }
 };
-
-// Pairs that were open in the last step.
-struct Open {
-  int count = 0;
-  int row[kOpen + kLanes];
-  Neighbour* entry[kOpen + kLanes];
+struct Queues {
+  Queue<kFull + kTake + kLanes> open;          // did not touch in the last step
+  Queue<2 * (kFull + kTake) + kLanes> closed;  // touch
+  Lanes overlap_ratio{};
 };
 
 SCREE_INLINE LaneVec3 load4(const Quad* quads, const int* index, Lanes& companion) {
@@ -34,46 +37,38 @@ SCREE_INLINE LaneVec3 load4(const Quad* quads, const int* index, Lanes& companio
   companion = d;
   return {a, b, c};
 }
-static_assert(sizeof(ContactMemory) == 8 * sizeof(float));
-SCREE_INLINE LaneFloats load_half(const ContactMemory& m, int half) {
-  LaneFloats v;
-  __builtin_memcpy(&v, reinterpret_cast<const char*>(__builtin_assume_aligned(&m, 32)) + 16 * half, 16);
+static_assert(sizeof(ContactMemory) == sizeof(TwinFloats));
+SCREE_INLINE TwinFloats load(const ContactMemory& m) {
+  TwinFloats v;
+  __builtin_memcpy(&v, __builtin_assume_aligned(&m, sizeof v), sizeof v);
   return v;
 }
-SCREE_INLINE void store_half(ContactMemory& m, int half, LaneFloats v) {
-  __builtin_memcpy(reinterpret_cast<char*>(__builtin_assume_aligned(&m, 32)) + 16 * half, &v, 16);
+SCREE_INLINE void store(ContactMemory& m, TwinFloats v) {
+  __builtin_memcpy(__builtin_assume_aligned(&m, sizeof v), &v, sizeof v);
 }
-SCREE_INLINE Lanes wide(LaneFloats v) {
-  return __builtin_convertvector(v, Lanes);
-}
-SCREE_INLINE LaneFloats narrow(Lanes v) {
-  return __builtin_convertvector(v, LaneFloats);
+
+// A contact of spheres i and j has this force on the one that owns it: a sleeper among them may wake.
+SCREE_INLINE void disturb(const StepView& view, BlockWork& work, int i, int j, const Neighbour& entry,
+                          const Vec3& force) {
+  const Spheres& s = view.spheres;
+  if (j >= s.movable || s.asleep[i] == s.asleep[j]) return;
+  const int sleeper = s.asleep[i] ? i : j;
+  if (view.sleep.disturbs(view.pairs.rest(entry.memory()), sleeper, force)) work.disturbed.push_back(sleeper);
 }
 
 // A contact of row i has closed or opened since the last step.
 void close_or_open(const StepView& view, BlockWork& work, int i, Neighbour& entry) {
-  const Spheres& s = view.spheres;
   view.pairs.turn(i, entry);
   if (entry.touching()) return;
   view.pairs.memory(entry) = {};
-  const int j = entry.sphere;
-  if (j >= s.movable || s.asleep[i] == s.asleep[j]) return;
-  const int sleeper = s.asleep[i] ? i : j;
-  if (view.sleep.disturbs(view.pairs.rest(entry.memory()), sleeper, Vec3::Zero()))
-    work.disturbed.push_back(sleeper);
+  disturb(view, work, i, entry.sphere, entry, Vec3::Zero());
 }
 
-// Adds the force of contact `at` to its pieces.
-SCREE_INLINE void add_force(const StepView& view, BlockWork& work, const Batch& batch, int at, Lanes force,
-                            Lanes torque1, Lanes torque2) {
+// Adds the force of a contact to its pieces, of which `i` owns it.
+SCREE_INLINE void add_force(const StepView& view, BlockWork& work, int i, int j, const Neighbour& entry,
+                            Lanes force, Lanes torque1, Lanes torque2) {
   const Spheres& s = view.spheres;
-  const int i = batch.owner[at], j = batch.partner[at];
-  if (view.sleep.asleep() > 0 && j < s.movable && (s.asleep[i] | s.asleep[j]) != 0) {
-    const int sleeper = s.asleep[i] ? i : j;
-    if (view.sleep.disturbs(view.pairs.rest(batch.entry[at]->memory()), sleeper,
-                            Vec3(force[0], force[1], force[2])))
-      work.disturbed.push_back(sleeper);
-  }
+  if (view.sleep.asleep() > 0) disturb(view, work, i, j, entry, Vec3(force[0], force[1], force[2]));
   if (!s.asleep[i]) {
     ForceSum& own = view.sum[i];
     store(own.force, load(own.force) + force);
@@ -100,119 +95,114 @@ SCREE_INLINE void add_force(const StepView& view, BlockWork& work, const Batch& 
   work.far[to].entries.push_back({back, torque2});
 }
 
-// The law for four contacts from `at` on, of which the first `count` are there.
-SCREE_INLINE void four_contacts(const StepView& view, BlockWork& work, const Batch& batch, int at, int count,
-                                Lanes& overlap_ratio) {
-  const Spheres& s = view.spheres;
-  ContactMemory* memories = view.pairs.memories();
-  const int *first = batch.owner + at, *second = batch.partner + at;
-  Lanes r1, r2, m1, m2, unused;
-  const LaneVec3 x1 = load4(s.place.data(), first, r1), x2 = load4(s.place.data(), second, r2);
-  const LaneVec3 v1 = load4(s.velocity.data(), first, m1), v2 = load4(s.velocity.data(), second, m2);
-  const LaneVec3 w1 = load4(s.spin.data(), first, unused), w2 = load4(s.spin.data(), second, unused);
+// Four contacts in lanes: each one's entry, and the spheres that it joins.
+struct FourContacts {
+  Neighbour* entry[kLanes];
+  int first[kLanes], second[kLanes];  // its owner and the other
+};
 
+// Velocity and spin of the second of each pair against the first, with the sum of both spins.
+SCREE_INLINE LaneVector<TwinFloats> against(const Spheres& s, const FourContacts& four,
+                                            LaneVector<LaneFloats>& spins) {
+  TwinFloats motion[kLanes];
+  LaneFloats sum[kLanes];
+  for (int k = 0; k < kLanes; ++k) {
+    const int i = four.first[k], j = four.second[k];
+    const Lanes w1 = load(s.spin[i]), w2 = load(s.spin[j]);
+    motion[k] = twin(narrow(load(s.velocity[j]) - load(s.velocity[i])), narrow(w2 - w1));
+    sum[k] = narrow(w1 + w2);
+  }
+  transpose(motion[0], motion[1], motion[2], motion[3]);
+  transpose(sum[0], sum[1], sum[2], sum[3]);
+  spins = {sum[0], sum[1], sum[2]};
+  return {motion[0], motion[1], motion[2]};
+}
+
+// The law for four contacts, of which the first `count` are there.
+SCREE_INLINE void compute(const StepView& view, BlockWork& work, const FourContacts& four, int count,
+                          Lanes& overlap_ratio) {
+  const Spheres& s = view.spheres;
+  const int *first_of = four.first, *second_of = four.second;
   const Lanes zero{}, one = zero + 1.0;
+  Lanes r1, r2;
+  const LaneVec3 x1 = load4(s.place.data(), first_of, r1), x2 = load4(s.place.data(), second_of, r2);
   const LaneVec3 apart = x2 - x1;
   const Lanes distance = root(apart.squaredNorm()), per_distance = one / distance;
   const LaneMask distinct = distance > zero;
-  BasicContactMotion<Lanes> motion;
+  LaneContactMotion motion;
   motion.normal = {pick(distinct, apart.x_ * per_distance, zero),
                    pick(distinct, apart.y_ * per_distance, zero),
                    pick(distinct, apart.z_ * per_distance, one)};
   motion.overlap = r1 + r2 - distance;
-  const unsigned there = (1u << count) - 1u, opened = ~signs(-motion.overlap) & there;
+  const unsigned opened = ~signs(-motion.overlap) & ((1u << count) - 1u);
+
   // The contact point halves the overlap. It may lie beyond the centre of a small sphere pressed into a
   // block: the arms always add up to the distance, so angular momentum is kept.
   const Lanes arm1 = r1 - 0.5 * motion.overlap, arm2 = r2 - 0.5 * motion.overlap;
-  motion.velocity = v2 - v1 - (arm1 * w1 + arm2 * w2).cross(motion.normal);
-  motion.spin = w2 - w1;
-  motion.twist = 0.5 * (w1 + w2).dot(motion.normal);
+  LaneVector<LaneFloats> spins;
+  LaneVector<TwinFloats> apart_at = against(s, four, spins);
+  const LaneVector<LaneFloats> n = narrow(motion.normal),
+                               spin = {second(apart_at.x_), second(apart_at.y_), second(apart_at.z_)};
+  // arm1 w1 + arm2 w2 of the sum and the difference of the spins
+  const LaneVector<LaneFloats> rim =
+      (spins * narrow(0.5 * distance) + spin * narrow(0.5 * (r2 - r1))).cross(n);
+  const LaneFloats nothing{};
+  motion.velocity_and_spin =
+      apart_at - LaneVector<TwinFloats>{twin(rim.x_, nothing), twin(rim.y_, nothing), twin(rim.z_, nothing)};
+  motion.twist = spins.dot(n) * 0.5f;
   motion.dt = view.last_dt;
   if (view.law.beta_n > 0 || view.law.beta_s > 0) {
-    for (int k = 0; k < kLanes; ++k)
-      if (second[k] >= s.movable) m2[k] = 1e300;
+    Lanes m1, m2;
+    for (int k = 0; k < kLanes; ++k) {
+      m1[k] = s.velocity[first_of[k]].w;
+      m2[k] = second_of[k] < s.movable ? s.velocity[second_of[k]].w : 1e300;
+    }
     motion.reduced_mass = m1 / (one + m1 / m2);
   } else {
     motion.reduced_mass = zero;
   }
 
-  ContactMemory *a = memories + batch.entry[at]->memory(), *b = memories + batch.entry[at + 1]->memory(),
-                *c = memories + batch.entry[at + 2]->memory(), *d = memories + batch.entry[at + 3]->memory();
-  BasicContactHistory<Lanes> history;
-  LaneFloats a0 = load_half(*a, 0), b0 = load_half(*b, 0), c0 = load_half(*c, 0), d0 = load_half(*d, 0);
-  LaneFloats a1 = load_half(*a, 1), b1 = load_half(*b, 1), c1 = load_half(*c, 1), d1 = load_half(*d, 1);
-  transpose(a0, b0, c0, d0);
-  transpose(a1, b1, c1, d1);
-  history.shear = {wide(a0), wide(b0), wide(c0)};
-  history.rolling = {wide(d0), wide(a1), wide(b1)};
-
+  ContactMemory* const memories = view.pairs.memories();
+  ContactMemory* memory[kLanes];
+  TwinFloats m[kLanes];
+  for (int k = 0; k < kLanes; ++k) m[k] = load(*(memory[k] = memories + four.entry[k]->memory()));
+  transpose(m[0], m[1], m[2], m[3]);
+  LaneContactHistory history = {m[0], m[1], m[2]};
   const BasicContactForce<Lanes> f =
-      contact_step<Lanes>(view.law, ball_ball<Lanes>(view.law, r1, r2), motion, history);
-
-  a0 = narrow(history.shear.x_), b0 = narrow(history.shear.y_), c0 = narrow(history.shear.z_);
-  d0 = narrow(history.rolling.x_), a1 = narrow(history.rolling.y_), b1 = narrow(history.rolling.z_);
-  transpose(a0, b0, c0, d0);
-  transpose(a1, b1, c1, d1);
-  store_half(*a, 0, a0), store_half(*b, 0, b0), store_half(*c, 0, c0), store_half(*d, 0, d0);
-  store_half(*a, 1, a1), store_half(*b, 1, b1), store_half(*c, 1, c1), store_half(*d, 1, d1);
+      contact_step(view.law, ball_ball<Lanes>(view.law, r1, r2), motion, history);
+  m[0] = history.x_, m[1] = history.y_, m[2] = history.z_, m[3] = TwinFloats{};
+  transpose(m[0], m[1], m[2], m[3]);
+  for (int k = 0; k < kLanes; ++k) store(*memory[k], m[k]);
   overlap_ratio = larger(overlap_ratio, motion.overlap / smaller(r1, r2));
 
-  const LaneVec3 lever = motion.normal.cross(f.force);
-  LaneVec3 force = f.force, torque1 = arm1 * lever + f.rolling, torque2 = arm2 * lever - f.rolling;
-  Lanes counts = one, none1 = zero, none2 = zero;
-  transpose(force.x_, force.y_, force.z_, counts);
-  transpose(torque1.x_, torque1.y_, torque1.z_, none1);
-  transpose(torque2.x_, torque2.y_, torque2.z_, none2);
-  if (opened == 0 && count == kLanes) {
-    add_force(view, work, batch, at, force.x_, torque1.x_, torque2.x_);
-    add_force(view, work, batch, at + 1, force.y_, torque1.y_, torque2.y_);
-    add_force(view, work, batch, at + 2, force.z_, torque1.z_, torque2.z_);
-    add_force(view, work, batch, at + 3, counts, none1, none2);
+  const LaneVec3 lever = motion.normal.cross(f.force), turn1 = lever * arm1 + f.rolling,
+                 turn2 = lever * arm2 - f.rolling;
+  Lanes force[] = {f.force.x_, f.force.y_, f.force.z_, one};  // their companion counts contacts
+  Lanes torque1[] = {turn1.x_, turn1.y_, turn1.z_, zero}, torque2[] = {turn2.x_, turn2.y_, turn2.z_, zero};
+  transpose(force[0], force[1], force[2], force[3]);
+  transpose(torque1[0], torque1[1], torque1[2], torque1[3]);
+  transpose(torque2[0], torque2[1], torque2[2], torque2[3]);
+  if (opened == 0 && count == kLanes) {  // nearly always; without a branch each
+#pragma GCC unroll 4
+    for (int k = 0; k < kLanes; ++k)
+      add_force(view, work, first_of[k], second_of[k], *four.entry[k], force[k], torque1[k], torque2[k]);
     return;
   }
-  const Lanes forces[] = {force.x_, force.y_, force.z_, counts},
-              torques1[] = {torque1.x_, torque1.y_, torque1.z_, none1},
-              torques2[] = {torque2.x_, torque2.y_, torque2.z_, none2};
+#pragma GCC unroll 1
   for (int k = 0; k < count; ++k) {
-    if ((opened >> k & 1u) == 0) {
-      add_force(view, work, batch, at + k, forces[k], torques1[k], torques2[k]);
-      continue;
-    }
-    Neighbour& entry = *batch.entry[at + k];
-    close_or_open(view, work, entry.sphere == first[k] ? second[k] : first[k], entry);
+    Neighbour& entry = *four.entry[k];
+    if ((opened >> k & 1u) == 0)
+      add_force(view, work, first_of[k], second_of[k], entry, force[k], torque1[k], torque2[k]);
+    else
+      close_or_open(view, work, entry.sphere == first_of[k] ? second_of[k] : first_of[k], entry);
   }
 }
 
-// Computes the contacts of a batch; unless it is the last of a block, up to three wait for others.
-SCREE_INLINE void compute(const StepView& view, Batch& batch, bool last, Lanes& overlap_ratio,
-                          BlockWork& work) {
-  int k = 0;
-  for (; k + kLanes <= batch.count; k += kLanes) four_contacts(view, work, batch, k, kLanes, overlap_ratio);
-  const int left = batch.count - k;
-  for (int q = 0; q < left; ++q) {
-    batch.owner[q] = batch.owner[k + q];
-    batch.partner[q] = batch.partner[k + q];
-    batch.entry[q] = batch.entry[k + q];
-  }
-  batch.count = left;
-  if (!last || left == 0) return;
-  for (int q = left; q < kLanes; ++q) {
-    batch.owner[q] = batch.owner[left - 1];
-    batch.partner[q] = batch.partner[left - 1];
-    batch.entry[q] = batch.entry[left - 1];
-  }
-  four_contacts(view, work, batch, 0, left, overlap_ratio);
-  batch.count = 0;
-}
-
-// Which of the open pairs have closed: they join the batch.
-SCREE_INLINE void sieve(const StepView& view, Open& open, Batch& batch, Lanes& overlap_ratio,
-                        BlockWork& work) {
+// Which of the open pairs have closed: they join the others.
+SCREE_INLINE void sieve(const StepView& view, BlockWork& work, Queues& queues) {
   const Quad* place = view.spheres.place.data();
-  for (int q = open.count; q < open.count + kLanes - 1 && open.count > 0; ++q) {
-    open.row[q] = open.row[0];
-    open.entry[q] = open.entry[0];
-  }
+  auto& open = queues.open;
+  open.pad();
   for (int k = 0; k < open.count; k += kLanes) {
     const int partner[kLanes] = {open.entry[k]->sphere, open.entry[k + 1]->sphere, open.entry[k + 2]->sphere,
                                  open.entry[k + 3]->sphere};
@@ -223,47 +213,88 @@ SCREE_INLINE void sieve(const StepView& view, Open& open, Batch& batch, Lanes& o
     if (open.count - k < kLanes) closed &= (1u << (open.count - k)) - 1u;
     for (; closed != 0; closed &= closed - 1) {
       const int q = k + std::countr_zero(closed);
-      if (batch.count >= kBatch) compute(view, batch, false, overlap_ratio, work);
       close_or_open(view, work, open.row[q], *open.entry[q]);
-      batch.add(open.row[q], *open.entry[q]);
+      queues.closed.put(queues.closed.count++, open.row[q], *open.entry[q]);
     }
   }
   open.count = 0;
 }
 
+// Computes what has been collected; unless it is the last of a block, up to three contacts wait for others.
+SCREE_VECTORISED
+void work_off(const StepView& view, BlockWork& work, Queues& queues, bool last) {
+  sieve(view, work, queues);
+  auto& closed = queues.closed;
+  if (last) closed.pad();
+  int k = 0;
+  for (; k < closed.count; k += kLanes) {
+    const int count = std::min(closed.count - k, kLanes);
+    if (count < kLanes && !last) break;
+    FourContacts four;
+    for (int q = 0; q < kLanes; ++q) {
+      const int row = closed.row[k + q], other = closed.entry[k + q]->sphere;
+      four.entry[q] = closed.entry[k + q];
+      four.first[q] = std::min(row, other);
+      four.second[q] = std::max(row, other);
+    }
+    compute(view, work, four, count, queues.overlap_ratio);
+  }
+  const int left = std::max(closed.count - k, 0);
+  for (int q = 0; q < left; ++q) closed.put(q, closed.row[k + q], *closed.entry[k + q]);
+  closed.count = left;
+}
+
 }  // namespace
 
-SCREE_VECTORISED
+void split_into_blocks(std::span<const int> awake, std::vector<BlockWork>& blocks) {
+  std::size_t count = 0;
+  for (std::size_t a = 0; a < awake.size();) {
+    const std::size_t first = a;
+    const int block = awake[a] / kBlock;
+    while (a < awake.size() && awake[a] / kBlock == block) ++a;
+    if (blocks.size() == count) blocks.emplace_back();
+    BlockWork& work = blocks[count++];
+    work.block = block;
+    work.awake = awake.subspan(first, a - first);
+    work.near_rim.clear();
+  }
+  blocks.resize(count);
+}
+
 void contact_forces(const StepView& view, BlockWork& work) {
   const Spheres& s = view.spheres;
-  Batch batch;
-  Open open;
-  Lanes overlap_ratio{};
+  Queues queues;
+  auto& open = queues.open;
+  auto& closed = queues.closed;
   work.far_blocks = 0;
   work.disturbed.clear();
-  for (const int i : work.awake) store(view.sum[i].force, Lanes{}), store(view.sum[i].torque, Lanes{});
-  const auto take = [&](int row, Neighbour& entry) __attribute__((always_inline)) {
-    if (batch.count >= kBatch) compute(view, batch, false, overlap_ratio, work);
-    if (open.count >= kOpen) sieve(view, open, batch, overlap_ratio, work);
-    // Both lists get it, and one keeps it: no branch to guess wrong.
-    const int touching = static_cast<int>(entry.tag & 1u), count = batch.count;
-    batch.add(row, entry);
-    batch.count = count + touching;
-    open.row[open.count] = row;
-    open.entry[open.count] = &entry;
-    open.count += 1 - touching;
+  const auto take = [&](int row, std::span<Neighbour> entries, const auto& wanted) {
+    for (std::size_t first = 0; first < entries.size(); first += kTake) {
+      for (Neighbour& entry : entries.subspan(first, std::min(kTake, entries.size() - first))) {
+        // Both queues get it, and one keeps it, or none: no branch to guess wrong.
+        const int wants = wanted(entry) ? 1 : 0, touching = entry.touching() ? wants : 0;
+        closed.put(closed.count, row, entry);
+        open.put(open.count, row, entry);
+        closed.count += touching;
+        open.count += wants - touching;
+        __builtin_prefetch(view.pairs.memories() + entry.memory(), 1);
+      }
+      if (closed.count >= kFull || open.count >= kFull) work_off(view, work, queues, false);
+    }
   };
+  for (const int i : work.awake) view.sum[i] = {};
   const bool sleepers = view.sleep.asleep() > 0;
-  for (const int i : work.awake) {
-    for (Neighbour& entry : view.pairs.owned(i)) take(i, entry);
-    if (!sleepers) continue;
-    for (Neighbour& entry : view.pairs.below(i))
-      if (s.asleep[entry.sphere]) take(i, entry);
+  for (std::size_t n = 0; n < work.awake.size(); ++n) {
+    const int i = work.awake[n];
+    if (n + kAhead < work.awake.size()) __builtin_prefetch(view.pairs.row(work.awake[n + kAhead]).data());
+    if (sleepers)
+      take(i, view.pairs.row(i),
+           [&](const Neighbour& other) { return (other.sphere > i) | (s.asleep[other.sphere] != 0); });
+    else
+      take(i, view.pairs.owned(i), [](const Neighbour&) { return true; });
   }
-  sieve(view, open, batch, overlap_ratio, work);
-  compute(view, batch, true, overlap_ratio, work);
-  for (int k = 0; k < kLanes; ++k)
-    if (overlap_ratio[k] > work.overlap_ratio) work.overlap_ratio = overlap_ratio[k];
+  work_off(view, work, queues, true);
+  for (int k = 0; k < kLanes; ++k) work.overlap_ratio = std::max(work.overlap_ratio, queues.overlap_ratio[k]);
 }
 
 SCREE_VECTORISED

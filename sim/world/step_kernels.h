@@ -1,10 +1,10 @@
 #pragma once
 // The two loops in which nearly all of the time goes: forces of contacts between spheres, and leapfrog.
 //
-// Spheres are handled in blocks of kBlock neighbours in memory (and so in space). A block first finds the
-// closed contacts that its awake spheres own, and those that they have with sleeping owners, then computes
-// them four at a time (lanes.h), then adds forces and moments one contact after another in the order of the
-// rows. What acts on a sphere is the sum of
+// Spheres are handled in blocks of kBlock neighbours in memory (and so in space). A block goes through the
+// contacts that its awake spheres own, and those that they have with sleeping owners, row by row. Some sixty
+// at a time are computed in groups of four (lanes.h); forces and moments are added one contact after another
+// in the order in which they were collected. What acts on a sphere is the sum of
 //   far:  contacts owned by spheres of earlier blocks, by rising owner, and
 //   near: contacts of its own block, by rising owner, then with meshes.
 // One thread adds far forces as it goes; several write them down block by block and add them afterwards.
@@ -50,6 +50,9 @@ struct BlockWork {
   std::vector<const FarForces*>
       inbox;  ///< what earlier blocks wrote down for this one, in the order of adding
 };
+
+/// Gives each block with awake spheres (rising) its share of them.
+void split_into_blocks(std::span<const int> awake, std::vector<BlockWork>& blocks);
 
 struct StepView {
   Spheres& spheres;

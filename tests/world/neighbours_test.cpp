@@ -148,8 +148,7 @@ TEST_P(Pairs, EveryOverlapIsListedOnceAndKeepsItsMemoryOverRepairs) {
       left = true;
     }
     if (left) {
-      list.move_balls(s, all_in_the_model(s), 1.0);
-      list.repair(s);
+      list.repair(s, all_in_the_model(s), 1.0);
       ++repairs;
     }
     const std::set<Pair> pairs = listed_pairs(list);

@@ -35,12 +35,7 @@ struct Scene {
     std::iota(order.begin(), order.end(), 0);
     pairs.rebuild(spheres, order, 0.0);
     sleep.renumber(order, spheres, pairs, std::vector<std::uint8_t>(count, 0), 0.0, 9.81);
-    for (int first = 0; first < spheres.movable; first += kBlock) {
-      const auto size = static_cast<std::size_t>(std::min(kBlock, spheres.movable - first));
-      BlockWork& work = blocks.emplace_back();
-      work.block = first / kBlock;
-      work.awake = sleep.awake().subspan(static_cast<std::size_t>(first), size);
-    }
+    split_into_blocks(sleep.awake(), blocks);
   }
   // One step's forces; as one thread does it, or as several do.
   void forces(double dt, bool write_down) {
