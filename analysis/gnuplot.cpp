@@ -72,6 +72,15 @@ std::string gnuplot_quoted(std::string_view text) {
   return out + "'";
 }
 
+std::string chart_terminal(int width, int height) {
+  return fmt::format(
+      "set terminal svg noenhanced size {},{} font 'Helvetica,Arial,DejaVu Sans,sans-serif,13' lw 1.4\n"
+      "set minussign\nset clip two\nset border 3 lc rgb '#888888'\nset tics nomirror "
+      "out scale 0.5 tc rgb '#333333'\n"
+      "set grid lc rgb '#e6e6e6' lw 0.6 lt 1\n",
+      width, height);
+}
+
 void run_gnuplot(const std::string& script, const std::filesystem::path& output) {
   const ScratchFolder scratch;
   std::error_code ignored;

@@ -38,6 +38,9 @@ std::vector<Picture> draw_charts(const RunResult& result, const SceneFacts& scen
 /// package to install when gnuplot is missing, with gnuplot's own words when it fails.
 void run_gnuplot(const std::string& script, const std::filesystem::path& output);
 
+/// Terminal, axes and grid of every chart (SVG), size in pixels.
+std::string chart_terminal(int width, int height);
+
 /// Text as a gnuplot string in which nothing is expanded.
 std::string gnuplot_quoted(std::string_view text);
 

@@ -29,15 +29,6 @@ struct Series {
   std::vector<Point> points;
 };
 
-std::string terminal(int width, int height) {
-  return fmt::format(
-      "set terminal svg noenhanced size {},{} font 'Helvetica,Arial,DejaVu Sans,sans-serif,13' lw 1.4\n"
-      "set minussign\nset clip two\nset border 3 lc rgb '#888888'\nset tics nomirror "
-      "out scale 0.5 tc rgb '#333333'\n"
-      "set grid lc rgb '#e6e6e6' lw 0.6 lt 1\n",
-      width, height);
-}
-
 /// Section centres along the slope: S1..Sn, or top, middle, bottom.
 double place_on_slope(const std::string& section, std::size_t n) {
   static const std::map<std::string, int> thirds{{"top", 1}, {"middle", 2}, {"bottom", 3}};
@@ -152,7 +143,7 @@ constexpr const char* kAlongSlope =
 
 Picture chi_chart(const RunResult& result, const std::filesystem::path& folder) {
   const std::vector<Series> all = with_printed(result, "chi", [](const Section& s) { return s.chi; });
-  run_gnuplot(terminal(760, 430) + kAlongSlope +
+  run_gnuplot(chart_terminal(760, 430) + kAlongSlope +
                   "set ylabel 'segregation degree χ'\nset key top left reverse Left samplen 2\n"
                   "set xzeroaxis lc rgb '#888888' lw 1 lt 1\nset offsets 0,0,graph 0.18,graph 0.05\n" +
                   data_blocks(all, "d", 0.008) + curves(all, "d", true),
@@ -172,7 +163,7 @@ Picture diameters_chart(const RunResult& result, const std::filesystem::path& fo
                                  {"D50", "d50_rel", &Section::d50_rel},
                                  {"D80", "d80_rel", &Section::d80_rel},
                                  {"D90", "d90_rel", &Section::d90_rel}};
-  std::string text = terminal(760, 620) + kAlongSlope;
+  std::string text = chart_terminal(760, 620) + kAlongSlope;
   text += "set key top left reverse Left samplen 1.5 font ',11'\nset multiplot layout 2,2 spacing 0.1,0.1\n";
   for (const Panel& panel : panels) {
     const std::vector<Series> all =
@@ -223,7 +214,7 @@ Picture passing_chart(const RunResult& result, const std::filesystem::path& fold
         fmt::format("lw 1.5 lc rgb '#{:06x}'", colour));
   }
   add("as dumped", table.original_passing, "lw 2 dt 2 lc rgb '#000000'");
-  run_gnuplot(terminal(760, 430) +
+  run_gnuplot(chart_terminal(760, 430) +
                   "set logscale x\nset xlabel 'grain diameter (m)'\nset ylabel 'passing by mass (%)'\n"
                   "set yrange [0:100]\nset grid\nset key outside right Left "
                   "reverse samplen 2\n" +
@@ -280,7 +271,7 @@ Picture profile_chart(const RunResult& result, const SceneFacts& scene, const st
   const int height =
       std::clamp(static_cast<int>(120 + 620 * 1.25 * top / std::max(right - left, 1e-9)), 260, 620);
   run_gnuplot(
-      terminal(760, height) +
+      chart_terminal(760, height) +
           "set size ratio -1\nset xlabel 'distance from the crest, x (m)'\nset ylabel 'height, z (m)'\n"
           "set key top right samplen 2\n" +
           fmt::format("set yrange [0:{:.5g}]\nset xrange [{:.5g}:{:.5g}]\n", 1.12 * top, left, right) +
@@ -320,7 +311,7 @@ Picture repose_chart(const RunResult& result, const std::filesystem::path& folde
                           std::stoi(std::string(rows[i].colour).substr(1), nullptr, 16));
     ticks += fmt::format("{}{} {}", i ? ", " : "", gnuplot_quoted(rows[i].label), -static_cast<int>(i));
   }
-  run_gnuplot(terminal(760, 120 + 34 * static_cast<int>(rows.size())) +
+  run_gnuplot(chart_terminal(760, 120 + 34 * static_cast<int>(rows.size())) +
                   fmt::format("set yrange [{}:0.6]\nset ytics ({})\n", 0.4 - static_cast<double>(rows.size()),
                               ticks) +
                   "set xlabel 'repose angle (degrees)'\nset offsets graph 0.08,graph 0.08,0,0\nunset key\n" +

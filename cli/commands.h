@@ -15,12 +15,42 @@ struct RunOptions {
   int threads = 0;            ///< 0: as many as cores
   std::filesystem::path out;  ///< empty: runs/NAME
   bool force = false;         ///< write into a folder that is not empty
+  bool summary_only = false;  ///< no report, no pictures
+};
+
+struct SweepOptions {
+  std::filesystem::path file;
+  std::filesystem::path store;  ///< empty: runs/store.sqlite
+  int jobs = 0;                 ///< runs side by side; 0: as many as cores
+  bool again = false;           ///< try runs that failed before again
+  bool list = false;            ///< show what is there, run nothing
+  bool failed = false;          ///< show what failed, run nothing
+  std::filesystem::path csv;    ///< export to this file
+  std::filesystem::path plot;   ///< draw into this file (SVG)
+  std::string output;           ///< what is shown and drawn; empty: the repose angle, or chi
+};
+
+struct CalibrateOptions {
+  std::filesystem::path file;
+  std::filesystem::path store;  ///< empty: runs/store.sqlite
+  std::filesystem::path out;    ///< empty: runs/NAME
+  int jobs = 0;                 ///< 0: as many as cores
+};
+
+struct PredictOptions {
+  std::filesystem::path file;       ///< a sweep
+  std::filesystem::path store;      ///< empty: runs/store.sqlite
+  std::vector<std::string> values;  ///< "material.mu=0.25"
+  std::string output;               ///< empty: the repose angle
 };
 
 int run_run(const RunOptions& options);
 int run_compare(const std::filesystem::path& dir, const std::vector<std::string>& cases);
 int run_validate(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 int run_schema();
+int run_calibrate(const CalibrateOptions& options);
+int run_predict(const PredictOptions& options);
+int run_sweep(const SweepOptions& options);
 
 /// The project's assets folder.
 std::filesystem::path asset_dir();

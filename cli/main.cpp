@@ -23,6 +23,8 @@ Examples:
   scree run scenarios/quick_dump.yaml                    a first pile, in seconds
   scree run scenarios/canadian_malartic_10m.yaml         four truck loads, and a report beside what was measured
   scree run scenarios/a1_10m.yaml --seeds 5 --set material.mu=0.5
+  scree sweep scenarios/sweeps/repose_lab.yaml           the repose angle over 16 pairs of friction
+  scree calibrate scenarios/calibrations/lab_angle.yaml  friction from a measured repose angle
   scree compare runs/canadian_malartic_10m               the comparison of a run, as a table
   scree validate scenarios/a1_10m.yaml                   check a file without running it
   scree schema > scenario.schema.json                    for editors that know JSON Schema
@@ -62,9 +64,53 @@ int main(int argc, char** argv) {
   run_app->add_option("--set", run.overrides, "Change a value: --set material.mu=0.5 (may be repeated)")
       ->take_all();
   run_app->add_flag("--force", run.force, "Write into --out even if it holds something");
+  run_app->add_flag("--summary-only", run.summary_only,
+                    "Write summary.json and sections.csv, no report and no pictures");
   run_app->footer(
       "\nExamples:\n  scree run scenarios/quick_dump.yaml\n"
       "  scree run scenarios/a1_10m.yaml --seeds 5 --out runs/a1_five --set experiment.dumps=2\n");
+
+  SweepOptions sweep;
+  CLI::App* sweep_app = app.add_subcommand("sweep", "Run a scenario over many values of its parameters");
+  sweep_app->add_option("file", sweep.file, "Sweep file (YAML)")->required();
+  sweep_app->add_option("--store", sweep.store,
+                        "Results store; default: runs/store.sqlite. What is in it is not run again");
+  sweep_app->add_option("--jobs", sweep.jobs, "Runs side by side; default: as many as cores")
+      ->check(CLI::Range(1, 1024));
+  sweep_app->add_flag("--again", sweep.again, "Try runs that failed before again");
+  sweep_app->add_flag("--list", sweep.list, "Show the points and what is known of them; run nothing");
+  sweep_app->add_flag("--failed", sweep.failed, "Show the runs that failed and why; run nothing");
+  sweep_app->add_option("--export", sweep.csv, "Write every run and its numbers to a CSV file");
+  sweep_app->add_option("--plot", sweep.plot, "Draw the output over one or two parameters (.svg)");
+  sweep_app->add_option("--output", sweep.output,
+                        "Number that is shown and drawn, for example angle_deg or chi_S6");
+  sweep_app->footer(
+      "\nExamples:\n  scree sweep scenarios/sweeps/repose_lab.yaml\n"
+      "  scree sweep scenarios/sweeps/repose_lab.yaml --list --export angles.csv --plot angles.svg\n"
+      "\nAn interrupted sweep goes on where it stopped when it is started again.\n");
+
+  CalibrateOptions calibrate;
+  CLI::App* calibrate_app =
+      app.add_subcommand("calibrate", "Find the parameters that make a scenario give what was measured");
+  calibrate_app->add_option("file", calibrate.file, "Calibration file (YAML)")->required();
+  calibrate_app->add_option("--store", calibrate.store, "Results store; default: runs/store.sqlite");
+  calibrate_app->add_option("--out", calibrate.out, "Folder for the result; default: runs/NAME");
+  calibrate_app->add_option("--jobs", calibrate.jobs, "Runs side by side; default: as many as cores")
+      ->check(CLI::Range(1, 1024));
+  calibrate_app->footer(
+      "\nExamples:\n  scree calibrate scenarios/calibrations/lab_angle.yaml\n"
+      "\nAn interrupted calibration goes on where it stopped when it is started again.\n");
+
+  PredictOptions predict;
+  CLI::App* predict_app =
+      app.add_subcommand("predict", "What a sweep would give in between, without simulating");
+  predict_app->add_option("file", predict.file, "Sweep file (YAML) whose runs are in the store")->required();
+  predict_app->add_option("values", predict.values, "A value of each parameter: material.mu=0.25")
+      ->required();
+  predict_app->add_option("--store", predict.store, "Results store; default: runs/store.sqlite");
+  predict_app->add_option("--output", predict.output, "Number that is predicted; default: angle_deg");
+  predict_app->footer(
+      "\nExample:\n  scree predict scenarios/sweeps/repose_lab.yaml material.mu=0.25 material.mu_r=0.3\n");
 
   std::filesystem::path compare_dir;
   std::vector<std::string> compare_cases;
@@ -88,7 +134,9 @@ int main(int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error);
     const bool names_one = argc > 1 && argv[1][0] != '-';
     if (names_one && app.get_subcommands().empty()) {
-      fmt::print(stderr, "scree: {}: no such subcommand; there are run, compare, validate and schema\n",
+      fmt::print(stderr,
+                 "scree: {}: no such subcommand; there are run, sweep, calibrate, predict, compare, validate "
+                 "and schema\n",
                  argv[1]);
       return kBadInput;
     }
@@ -102,6 +150,9 @@ int main(int argc, char** argv) {
   sigaction(SIGTERM, &action, nullptr);
   try {
     if (*run_app) return run_run(run);
+    if (*sweep_app) return run_sweep(sweep);
+    if (*calibrate_app) return run_calibrate(calibrate);
+    if (*predict_app) return run_predict(predict);
     if (*compare_app) return run_compare(compare_dir, compare_cases);
     if (*validate_app) return run_validate(validate_file, validate_overrides);
     if (*schema_app) return run_schema();

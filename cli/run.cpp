@@ -175,13 +175,16 @@ int run_run(const RunOptions& options) {
                           scree::read_reference(asset_dir() / "reference" / "results.csv"), wall);
   scree::write_summary(result, out / "summary.json");
   scree::write_sections_csv(result, out / "sections.csv");
-  scree::SceneFacts scene;
-  if (const auto* dump = std::get_if<scree::EndDump>(&scenario.experiment))
-    scene.bench_slope = dump->bench.slope_deg;
-  scree::write_report(result, out, scene);
+  if (!options.summary_only) {
+    scree::SceneFacts scene;
+    if (const auto* dump = std::get_if<scree::EndDump>(&scenario.experiment))
+      scene.bench_slope = dump->bench.slope_deg;
+    scree::write_report(result, out, scene);
+  }
 
   scree::print_result(result);
-  fmt::print("\nreport: {}\n", (out / "report.html").string());
+  fmt::print("\n{}: {}\n", options.summary_only ? "summary" : "report",
+             (out / (options.summary_only ? "summary.json" : "report.html")).string());
   if (interrupted) return kInterrupted;
   return failed ? kFailed : kOk;
 }

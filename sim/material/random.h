@@ -5,7 +5,13 @@
 namespace scree {
 
 /// What a stream of random numbers is for; streams of different purposes are independent.
-enum class RandomPurpose : std::uint64_t { diameters = 1, positions = 2, base_layer = 3, measurement = 4 };
+enum class RandomPurpose : std::uint64_t {
+  diameters = 1,
+  positions = 2,
+  base_layer = 3,
+  measurement = 4,
+  design = 5
+};
 
 /// Counter-based generator (SplitMix64 finaliser over key and counter; Steele, Lea & Flood, OOPSLA 2014).
 /// The n-th number of a stream (seed, dump, purpose) is a pure function of the four: nothing else moves it.

@@ -84,7 +84,8 @@ class PairList {
   /// Those that it owns: above i.
   std::span<const Neighbour> owned(int i) const { return rows_.row(i).subspan(below_[i]); }
   std::span<Neighbour> owned(int i) { return rows_.row(i).subspan(below_[i]); }
-  std::span<Neighbour> row(int i) { return rows_.row(i); }
+  /// Those that others own: below i.
+  std::span<Neighbour> below(int i) { return rows_.row(i).first(below_[i]); }
   /// Marks the contact of an entry of row i as closed or open, in both rows.
   void turn(int i, Neighbour& entry) {
     entry.tag ^= 1u;

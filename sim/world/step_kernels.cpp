@@ -286,12 +286,11 @@ void contact_forces(const StepView& view, BlockWork& work) {
   const bool sleepers = view.sleep.asleep() > 0;
   for (std::size_t n = 0; n < work.awake.size(); ++n) {
     const int i = work.awake[n];
-    if (n + kAhead < work.awake.size()) __builtin_prefetch(view.pairs.row(work.awake[n + kAhead]).data());
+    if (n + kAhead < work.awake.size())
+      __builtin_prefetch(view.pairs.neighbours(work.awake[n + kAhead]).data());
+    take(i, view.pairs.owned(i), [](const Neighbour&) { return true; });
     if (sleepers)
-      take(i, view.pairs.row(i),
-           [&](const Neighbour& other) { return (other.sphere > i) | (s.asleep[other.sphere] != 0); });
-    else
-      take(i, view.pairs.owned(i), [](const Neighbour&) { return true; });
+      take(i, view.pairs.below(i), [&](const Neighbour& other) { return s.asleep[other.sphere] != 0; });
   }
   work_off(view, work, queues, true);
   for (int k = 0; k < kLanes; ++k) work.overlap_ratio = std::max(work.overlap_ratio, queues.overlap_ratio[k]);

@@ -1,0 +1,101 @@
+#include "analysis/sweep_chart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/pictures.h"
+
+namespace scree {
+namespace {
+
+constexpr int kWidth = 640, kHeight = 480;
+
+std::string titles(const std::string& title, const std::string& x, const std::string& y) {
+  return fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", gnuplot_quoted(title), gnuplot_quoted(x),
+                     gnuplot_quoted(y));
+}
+
+}  // namespace
+
+void draw(const LineChart& chart, const std::filesystem::path& file) {
+  std::string script = chart_terminal(kWidth, kHeight) + titles(chart.title, chart.x_label, chart.y_label);
+  script += "$data << END\n";
+  for (const LineChart::Point& p : chart.points)
+    if (p.y.n > 0) script += fmt::format("{} {} {}\n", p.x, p.y.mean, p.y.n > 1 ? p.y.std : 0.0);
+  script +=
+      "END\nset offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05\n"
+      "plot $data using 1:2 with lines lc rgb '#0072b2' notitle, '' using 1:2:3 with yerrorbars pt 7 ps 0.6 "
+      "lc rgb '#0072b2' title 'mean and deviation between seeds'\n";
+  run_gnuplot(script, file);
+}
+
+void draw(const ContourMap& map, const std::filesystem::path& file) {
+  double low = INFINITY, high = -INFINITY;
+  std::string grid, labels;
+  for (std::size_t j = 0; j < map.y.size(); ++j) {
+    for (std::size_t i = 0; i < map.x.size(); ++i) {
+      const double v = map.value[j][i];
+      grid += fmt::format("{} {} {}\n", map.x[i], map.y[j], std::isfinite(v) ? fmt::format("{}", v) : "NaN");
+      if (!std::isfinite(v)) continue;
+      low = std::min(low, v), high = std::max(high, v);
+      labels += fmt::format("{} {} {:.1f}\n", map.x[i], map.y[j], v);
+    }
+    grid += "\n";
+  }
+  const auto thick_line = [&](const std::string& block, double level) {
+    return fmt::format(
+        "set contour base\nset cntrparam levels discrete {}\nset table {}\n"
+        "splot $grid using 1:2:3 with lines nosurface\nunset table\nunset contour\n",
+        level, block);
+  };
+  std::string script = fmt::format("$grid << END\n{}END\n$labels << END\n{}END\n", grid, labels);
+  if (map.target) script += thick_line("$target", *map.target);
+  script += fmt::format(
+      "set contour base\nset cntrparam linear\nset cntrparam levels incremental {},{},{}\nset table $lines\n"
+      "splot $grid using 1:2:3 with lines nosurface\nunset table\nunset contour\n",
+      map.spacing * std::floor(low / map.spacing), map.spacing, high);
+  script += chart_terminal(kWidth, kHeight) + titles(map.title, map.x_label, map.y_label);
+  std::string palette;
+  for (int k = 0; k <= 8; ++k)
+    palette += fmt::format("{}{} '#{:06x}'", k == 0 ? "" : ", ", k, viridis(k / 8.0));
+  script += fmt::format(
+      "set palette defined ({})\nset cblabel {}\nset view map\nset pm3d interpolate 20,20\nunset key\n"
+      "set xrange [{}:{}]\nset yrange [{}:{}]\nset multiplot\n",
+      palette, gnuplot_quoted(map.value_label), map.x.front(), map.x.back(), map.y.front(), map.y.back());
+  script += "splot $grid using 1:2:3 with pm3d, $lines using 1:2:(0) with lines lc rgb '#ffffff' lw 1";
+  if (map.diagonal) script += ", [t=0:1] '+' using 1:1:(0) with lines dt 2 lc rgb '#ffffff' lw 1.5";
+  if (map.target) script += ", $target using 1:2:(0) with lines lc rgb '#d55e00' lw 3";
+  script +=
+      ", $labels using 1:2:(0):3 with labels tc rgb '#000000' font ',11' offset 0,0.6 point pt 7 ps 0.4 lc "
+      "rgb '#000000'\n";
+  script += "unset multiplot\n";
+  run_gnuplot(script, file);
+}
+
+void draw(const CalibrationChart& chart, const std::filesystem::path& file) {
+  std::string script = "$runs << END\n";
+  for (const auto& [x, y] : chart.runs) script += fmt::format("{} {}\n", x, y);
+  script += "END\n$band << END\n";
+  for (std::size_t k = 0; k < chart.x.size(); ++k)
+    script += fmt::format("{} {} {} {}\n", chart.x[k], chart.mean[k], chart.low[k], chart.high[k]);
+  script += "END\n" + chart_terminal(kWidth, kHeight) + titles(chart.title, chart.x_label, chart.y_label);
+  const double half = 1.645 * chart.uncertainty;
+  script += fmt::format(
+      "set key top left\nset xrange [{0}:{1}]\n"
+      "set object 1 rectangle from graph 0, first {2} to graph 1, first {3} fs solid 0.25 noborder fc rgb "
+      "'#d55e00' behind\n"
+      "set object 2 rectangle from first {4}, graph 0 to first {5}, graph 1 fs solid 0.2 noborder fc rgb "
+      "'#009e73' behind\n"
+      "set arrow 1 from first {6}, graph 0 to first {6}, graph 1 nohead lc rgb '#009e73' lw 2\n"
+      "plot $band using 1:3:4 with filledcurves fs solid 0.25 lc rgb '#0072b2' title 'emulator, 90 %', "
+      "'' using 1:2 with lines lc rgb '#0072b2' notitle, {7} with lines lc rgb '#d55e00' lw 2 title "
+      "'target', "
+      "$runs using 1:2 with points pt 7 ps 0.5 lc rgb '#333333' title 'simulations'\n",
+      chart.x.front(), chart.x.back(), chart.target - half, chart.target + half, chart.interval[0],
+      chart.interval[1], chart.best, chart.target);
+  run_gnuplot(script, file);
+}
+
+}  // namespace scree

@@ -1,0 +1,48 @@
+#pragma once
+// A number over one or two parameters: a line with deviations, or a contour map.
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/results.h"
+
+namespace scree {
+
+/// One parameter, and the number at each of its values.
+struct LineChart {
+  std::string title, x_label, y_label;
+  struct Point {
+    double x;
+    MeanStd y;  ///< over seeds
+  };
+  std::vector<Point> points;
+};
+
+/// Two parameters on a grid, and the number at each node.
+struct ContourMap {
+  std::string title, x_label, y_label, value_label;
+  std::vector<double> x, y;                ///< rising
+  std::vector<std::vector<double>> value;  ///< [y][x]; NaN where nothing is known
+  std::optional<double> target;            ///< drawn as a thick line
+  double spacing = 2;                      ///< between contours
+  bool diagonal = false;                   ///< the line y = x
+};
+
+/// What a calibration of one parameter found: simulations, the emulator's 90 % band, the target's.
+struct CalibrationChart {
+  std::string title, x_label, y_label;
+  std::vector<std::array<double, 2>> runs;  ///< parameter, number
+  std::vector<double> x, mean, low, high;   ///< emulator
+  double target = 0, uncertainty = 0;
+  double best = 0;                   ///< parameter chosen
+  std::array<double, 2> interval{};  ///< that holds 90 % of the probability
+};
+
+/// Draws as SVG. Throws std::runtime_error, see run_gnuplot.
+void draw(const LineChart& chart, const std::filesystem::path& file);
+void draw(const ContourMap& map, const std::filesystem::path& file);
+void draw(const CalibrationChart& chart, const std::filesystem::path& file);
+
+}  // namespace scree

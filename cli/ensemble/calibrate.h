@@ -1,0 +1,44 @@
+#pragma once
+// The loop of a calibration: simulate where it helps, emulate, find the parameters that meet the targets.
+#include <Eigen/Dense>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "analysis/calibration.h"
+#include "cli/ensemble/calibration_file.h"
+
+namespace scree {
+
+/// One simulation that a calibration asks for.
+struct CalibrationRun {
+  std::filesystem::path scenario;
+  Eigen::VectorXd at;  ///< parameters, each from 0 to 1 between its ends
+  std::uint64_t seed = 0;
+};
+
+/// Does simulations (as many at once as it likes) and returns the number asked for of each target's scenario:
+/// [run][target], NaN for a target of another scenario. Throws CalibrationStopped, std::runtime_error.
+using Simulator = std::function<std::vector<std::vector<double>>(const std::vector<CalibrationRun>& runs)>;
+
+struct CalibrationStopped : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct CalibrationResult {
+  std::vector<CalibrationRun> runs;
+  std::vector<std::vector<double>> values;           ///< [run][target]
+  std::vector<std::shared_ptr<Emulator>> emulators;  ///< by target
+  std::shared_ptr<Posterior> posterior;
+  /// Grid only, by target: means over seeds at the nodes, the first parameter fastest.
+  std::vector<std::vector<double>> grid;
+};
+
+/// A value of a parameter from its share of the way between its ends, and as text for a scenario.
+double parameter_value(const CalibrationSpec& spec, int parameter, double share);
+
+/// Runs the calibration. `bayes`: a Sobol design first, a new seed at each point; then, as many at a time as
+/// there are `side_by_side`, where the posterior says that it helps most.
+CalibrationResult calibrate(const CalibrationSpec& spec, const Simulator& simulate, int side_by_side);
+
+}  // namespace scree

@@ -1,0 +1,63 @@
+#pragma once
+// Where the runs of an ensemble are done. One implementation runs processes of this machine; a cluster's job
+// arrays would be another.
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace scree {
+
+/// A run to be done: `scree run` on a scenario file in a folder of its own, where it leaves summary.json and
+/// log.txt.
+struct Job {
+  std::string key;
+  std::filesystem::path folder;  ///< holds scenario.yaml
+};
+
+/// A run that has ended, well or badly.
+struct EndedJob {
+  std::string key;
+  bool good = false;
+  std::string message;  ///< the last words of one that ended badly
+  double wall_seconds = 0;
+};
+
+class Executor {
+ public:
+  virtual ~Executor() = default;
+  /// Runs that may be started now.
+  virtual int free_places() const = 0;
+  virtual void start(const Job& job) = 0;
+  /// A run that has ended since the last call; none when nothing has, after at most `patience` seconds.
+  virtual std::optional<EndedJob> wait(double patience) = 0;
+  /// Share done (0 to 1) of each run under way.
+  virtual std::vector<double> shares() const = 0;
+  /// Ends all runs under way and forgets them.
+  virtual void cancel() = 0;
+};
+
+/// Runs `places` processes of the program side by side, one thread each. They die with this program, however
+/// it ends.
+class LocalProcesses final : public Executor {
+ public:
+  LocalProcesses(std::filesystem::path program, int places);
+  ~LocalProcesses() override;
+  int free_places() const override;
+  void start(const Job& job) override;
+  std::optional<EndedJob> wait(double patience) override;
+  std::vector<double> shares() const override;
+  void cancel() override;
+
+ private:
+  struct Process {
+    Job job;
+    int pid;
+    double started;  // s, steady clock
+  };
+  std::filesystem::path program_;
+  int places_;
+  std::vector<Process> processes_;
+};
+
+}  // namespace scree

@@ -1,0 +1,60 @@
+#pragma once
+// What the readers of sweep and calibration files share: values of a YAML tree, and what is wrong with them.
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/scene/yaml_tree.h"
+
+namespace scree {
+
+class FileReader {
+ public:
+  explicit FileReader(std::vector<ScenarioError>& errors) : errors_(errors) {}
+
+  void fail(const Place& place, const std::string& message) { report(errors_, place, message); }
+  bool good() const { return errors_.empty(); }
+  /// Refuses keys that are not among these; `where`: " in a grid".
+  void allow(const YamlNode& map, const std::vector<std::string>& allowed, const std::string& where);
+  /// The map at a key; null, with an error if it is required or no map, when it is not there.
+  const YamlNode* map_at(const YamlNode& parent, const char* key, bool required, const char* what);
+  /// The list at a key, with an entry at least.
+  const YamlNode* list_at(const YamlNode& parent, const char* key, bool required, const char* what);
+  std::optional<std::string> scalar(const YamlNode& node, const std::string& key);
+  std::optional<double> number(const YamlNode& node, const std::string& key);
+  std::optional<std::uint64_t> whole(const YamlNode& node, const std::string& key, double least, double most);
+  /// Distinct integers.
+  std::vector<std::uint64_t> seeds(const YamlNode& list);
+
+  /// A key whose value lies between two numbers.
+  struct Span {
+    std::string key;
+    double from, to;
+  };
+  /// {key: {from: .., to: ..}, ...}
+  std::vector<Span> spans(const YamlNode& map);
+
+ private:
+  std::vector<ScenarioError>& errors_;
+};
+
+/// What a sweep and a calibration say of their scenario besides its parameters.
+struct Variation {
+  std::vector<std::string> fixed;                         ///< overrides "key=value"
+  std::vector<std::pair<std::string, std::string>> ties;  ///< the first key takes the value of the second
+};
+
+/// Reads `set` and `ties`; the keys followed must be among `parameters`, those that follow must not.
+Variation read_variation(const YamlNode& root, const std::vector<std::string>& parameters,
+                         FileReader& reader);
+
+/// The overrides of one point.
+std::vector<std::string> overrides_of(const Variation& variation, const std::vector<std::string>& parameters,
+                                      const std::vector<std::string>& values);
+
+/// The scenario file named at `key`, relative to the file that names it.
+std::optional<std::filesystem::path> scenario_at(const YamlNode& parent, const std::filesystem::path& file,
+                                                 bool required, FileReader& reader);
+
+}  // namespace scree

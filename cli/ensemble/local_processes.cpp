@@ -1,0 +1,134 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+#include "cli/ensemble/executor.h"
+
+namespace scree {
+namespace {
+
+constexpr auto kLook = std::chrono::milliseconds(20);  // between looks at the processes
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::vector<std::string> lines_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);)
+    if (!line.empty()) lines.push_back(line);
+  return lines;
+}
+
+// Of a line " 42 %  about ..." in a run's log.
+std::optional<double> share_of(const std::string& line) {
+  std::istringstream words(line);
+  double percent = 0;
+  std::string sign;
+  if (words >> percent >> sign && sign == "%") return 0.01 * percent;
+  return std::nullopt;
+}
+
+double share_in(const std::filesystem::path& log) {
+  double share = 0;
+  for (const std::string& line : lines_of(log)) share = share_of(line).value_or(share);
+  return share;
+}
+
+// What a run said besides its progress, in one line.
+std::string words_in(const std::filesystem::path& log) {
+  std::string text;
+  for (const std::string& line : lines_of(log))
+    if (!share_of(line)) text += (text.empty() ? "" : "; ") + line;
+  constexpr std::size_t kMost = 500;
+  return text.size() > kMost ? text.substr(text.size() - kMost) : text;
+}
+
+}  // namespace
+
+LocalProcesses::LocalProcesses(std::filesystem::path program, int places)
+    : program_(std::move(program)), places_(places) {}
+
+LocalProcesses::~LocalProcesses() {
+  cancel();
+}
+
+int LocalProcesses::free_places() const {
+  return places_ - static_cast<int>(processes_.size());
+}
+
+void LocalProcesses::start(const Job& job) {
+  const std::string program = program_.string(), scenario = (job.folder / "scenario.yaml").string(),
+                    out = (job.folder / "run").string(), log = (job.folder / "log.txt").string();
+  std::vector<std::string> words{program, "run", scenario, "--out", out, "--threads", "1", "--summary-only"};
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  const pid_t parent = getpid();
+  const pid_t pid = fork();
+  if (pid < 0) throw std::runtime_error(fmt::format("a process cannot be started: {}", std::strerror(errno)));
+  if (pid == 0) {  // only calls that are safe after a fork
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(1);  // it died before the line above
+    setpgid(0, 0);                      // Ctrl-C goes to the sweep, which ends its runs itself
+    const int null = open("/dev/null", O_RDONLY),
+              file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    dup2(null, STDIN_FILENO);
+    dup2(file, STDOUT_FILENO);
+    dup2(file, STDERR_FILENO);
+    execv(program.c_str(), arguments.data());
+    _exit(127);
+  }
+  processes_.push_back({job, pid, now()});
+}
+
+std::optional<EndedJob> LocalProcesses::wait(double patience) {
+  const double until = now() + patience;
+  while (true) {
+    for (auto process = processes_.begin(); process != processes_.end(); ++process) {
+      int status = 0;
+      if (waitpid(process->pid, &status, WNOHANG) != process->pid) continue;
+      EndedJob ended{
+          process->job.key, WIFEXITED(status) && WEXITSTATUS(status) == 0, {}, now() - process->started};
+      if (!ended.good) {
+        const std::string words = words_in(process->job.folder / "log.txt");
+        ended.message = WIFSIGNALED(status) ? fmt::format("killed by signal {}", WTERMSIG(status))
+                        : words.empty()     ? fmt::format("exit status {}", WEXITSTATUS(status))
+                                            : words;
+      }
+      processes_.erase(process);
+      return ended;
+    }
+    if (now() >= until) return std::nullopt;
+    std::this_thread::sleep_for(kLook);
+  }
+}
+
+std::vector<double> LocalProcesses::shares() const {
+  std::vector<double> shares;
+  for (const Process& process : processes_) shares.push_back(share_in(process.job.folder / "log.txt"));
+  return shares;
+}
+
+void LocalProcesses::cancel() {
+  for (const Process& process : processes_) kill(process.pid, SIGKILL);
+  for (const Process& process : processes_)
+    while (waitpid(process.pid, nullptr, 0) < 0 && errno == EINTR) {
+    }
+  processes_.clear();
+}
+
+}  // namespace scree

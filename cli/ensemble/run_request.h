@@ -1,0 +1,17 @@
+#pragma once
+// From a scenario to what identifies its simulation with one seed.
+#include <filesystem>
+#include <string>
+
+#include "sim/io/results_store.h"
+#include "sim/scene/scenario.h"
+
+namespace scree {
+
+/// The scenario with this seed alone, without what changes no result (title, reference cases, frames). Its
+/// key is a hash of that text, of `version`, and of the grading and the meshes themselves: renaming a file
+/// changes nothing, another content does. Throws std::runtime_error if a file cannot be read.
+RunRequest run_request(Scenario scenario, std::uint64_t seed, const std::string& version,
+                       const std::filesystem::path& asset_dir);
+
+}  // namespace scree

@@ -1,0 +1,22 @@
+#pragma once
+// What sweep, calibrate and predict share on the command line.
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "cli/ensemble/ensemble.h"
+
+/// The store named, or runs/store.sqlite; none, with a message, if it cannot be opened. `must_exist`: it is
+/// not made.
+std::unique_ptr<scree::ResultsStore> open_store(const std::filesystem::path& named, bool must_exist);
+
+/// Brings the runs into the store by `jobs` processes (0: as many as cores), with progress on stderr. Ctrl-C
+/// ends it.
+scree::EnsembleProgress run_with_progress(const std::vector<scree::RunRequest>& runs,
+                                          scree::ResultsStore& store, int jobs, bool again);
+
+/// Runs side by side that `jobs` stands for.
+int side_by_side(int jobs);
+
+/// A decimal number and nothing else.
+std::optional<double> number_of(const std::string& text);

@@ -1,0 +1,106 @@
+// scree predict: what a sweep's scenario would give at other values, from its finished runs alone.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "analysis/emulator.h"
+#include "cli/commands.h"
+#include "cli/ensemble/run_request.h"
+#include "cli/ensemble/sweep.h"
+#include "cli/ensemble_console.h"
+#include "scree_version.h"
+
+namespace {
+
+constexpr double kDeviations90 = 1.645;  // of a normal distribution: what 90 % lie within
+
+struct Axis {
+  double low = INFINITY, high = -INFINITY;
+  double share(double value) const { return high > low ? (value - low) / (high - low) : 0.0; }
+};
+
+int refuse(const std::string& message) {
+  fmt::print(stderr, "{}\n", message);
+  return kBadInput;
+}
+
+}  // namespace
+
+int run_predict(const PredictOptions& options) {
+  const scree::SweepResult loaded = scree::load_sweep(options.file, asset_dir());
+  for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
+  if (!loaded.errors.empty()) return kBadInput;
+  const scree::Sweep& sweep = loaded.sweep;
+  const auto store = open_store(options.store, true);
+  if (!store) return kBadInput;
+  const std::string output = options.output.empty() ? "angle_deg" : options.output;
+
+  std::vector<Axis> axes(sweep.parameters.size());
+  std::vector<std::vector<double>> at;
+  std::vector<double> values;
+  for (const scree::SweepPoint& point : sweep.points) {
+    std::vector<double> numbers;
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+      const auto number = number_of(point.values[k]);
+      if (!number)
+        return refuse(fmt::format("{}: '{}' is no number; only numbers can be predicted between",
+                                  sweep.parameters[k], point.values[k]));
+      numbers.push_back(*number);
+    }
+    for (const std::uint64_t seed : sweep.seeds) {
+      const auto found =
+          store->find(scree::run_request(point.scenario, seed, SCREE_VERSION, asset_dir()).key);
+      if (!found || !found->outputs.contains(output)) continue;
+      at.push_back(numbers);
+      values.push_back(found->outputs.at(output));
+      for (std::size_t k = 0; k < axes.size(); ++k) {
+        axes[k].low = std::min(axes[k].low, numbers[k]);
+        axes[k].high = std::max(axes[k].high, numbers[k]);
+      }
+    }
+  }
+  if (values.size() < 4)
+    return refuse(
+        fmt::format("the store has {} runs of this sweep with '{}', 4 are needed; run: scree sweep {}",
+                    values.size(), output, options.file.string()));
+
+  std::map<std::string, double> asked;
+  for (const std::string& text : options.values) {
+    const auto equals = text.find('=');
+    const auto number = equals == std::string::npos ? std::nullopt : number_of(text.substr(equals + 1));
+    if (!number) return refuse(fmt::format("'{}': write it as material.mu=0.25", text));
+    asked[text.substr(0, equals)] = *number;
+  }
+  Eigen::VectorXd point(static_cast<Eigen::Index>(axes.size()));
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    const std::string& name = sweep.parameters[k];
+    if (!asked.contains(name))
+      return refuse(
+          fmt::format("a value of {} is needed (between {} and {})", name, axes[k].low, axes[k].high));
+    const double value = asked.at(name);
+    if (value < axes[k].low || value > axes[k].high)
+      return refuse(fmt::format("{}={} is outside of what was simulated, {} to {}", name, value, axes[k].low,
+                                axes[k].high));
+    point[static_cast<Eigen::Index>(k)] = axes[k].share(value);
+    asked.erase(name);
+  }
+  if (!asked.empty())
+    return refuse(fmt::format("{} is no parameter of this sweep; there are {}", asked.begin()->first,
+                              fmt::join(sweep.parameters, ", ")));
+
+  Eigen::MatrixXd x(static_cast<Eigen::Index>(values.size()), static_cast<Eigen::Index>(axes.size()));
+  for (std::size_t r = 0; r < values.size(); ++r)
+    for (std::size_t k = 0; k < axes.size(); ++k)
+      x(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(k)) = axes[k].share(at[r][k]);
+  const scree::Emulator emulator(
+      x, Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+  const scree::Prediction p = emulator.at(point);
+  const double one = kDeviations90 * std::hypot(p.std, p.noise), mean = kDeviations90 * p.std;
+  fmt::print("{} = {:.2f}\n", output, p.mean);
+  fmt::print("90 % interval of the mean over seeds: {:.2f} to {:.2f}\n", p.mean - mean, p.mean + mean);
+  fmt::print("90 % interval of one seed:            {:.2f} to {:.2f}\n", p.mean - one, p.mean + one);
+  fmt::print("from {} runs\n", values.size());
+  return kOk;
+}

@@ -1,0 +1,109 @@
+// The loop over runs, with a program that only pretends to simulate.
+#include "cli/ensemble/ensemble.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+
+namespace fs = std::filesystem;
+
+namespace scree {
+namespace {
+
+class Runs : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder = fs::temp_directory_path() / ("scree_ensemble_" + std::to_string(getpid()));
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    for (int k = 0; k < 6; ++k)
+      requests.push_back({"key" + std::to_string(k), "number: " + std::to_string(k) + "\n", 1});
+  }
+  void TearDown() override { fs::remove_all(folder); }
+
+  // A program called as `PROGRAM run FOLDER/scenario.yaml --out FOLDER/run ...`; `body` sees its number in
+  // $n.
+  fs::path program(const std::string& body) {
+    const fs::path file = folder / "program.sh";
+    std::ofstream(file) << "#!/bin/sh\nn=$(sed 's/number: //' \"$2\")\necho $n >> "
+                        << (folder / "begun").string() << "\n"
+                        << body << "\n"
+                        << R"(mkdir -p "$4"; cat > "$4/summary.json" <<END
+{"seeds": [1], "particles": 10, "simulated_seconds": 1.5, "largest_overlap_ratio": 0.1, "lost_mass_t": 0,
+ "at_rest": true, "sections": [], "repose": {"angle_deg": {"per_seed": [$n], "mean": $n, "std": null}}}
+END
+)";
+    fs::permissions(file, fs::perms::owner_all);
+    return file;
+  }
+  std::vector<std::string> begun() {
+    std::ifstream in(folder / "begun");
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
+  }
+  static bool go_on(const EnsembleProgress&) { return true; }
+
+  fs::path folder;
+  std::vector<RunRequest> requests;
+};
+
+TEST_F(Runs, AllComeIntoTheStoreOnce) {
+  ResultsStore store(folder / "store.sqlite");
+  LocalProcesses processes(program("sleep 0.1"), 3);
+  requests.push_back(requests.front());  // stands in the sweep twice
+  const EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
+  EXPECT_EQ(end.runs, 6u);
+  EXPECT_EQ(end.done, 6u);
+  EXPECT_EQ(end.failed, 0u);
+  EXPECT_EQ(begun().size(), 6u);
+  for (int k = 0; k < 6; ++k) {
+    const auto found = store.find("key" + std::to_string(k));
+    ASSERT_TRUE(found.has_value());
+    EXPECT_EQ(found->state, RunState::done);
+    EXPECT_EQ(found->outputs.at("angle_deg"), k);
+    EXPECT_EQ(found->outputs.at("at_rest"), 1);
+    EXPECT_GT(found->wall_seconds, 0.09);
+  }
+  EXPECT_FALSE(fs::exists(folder / "store.sqlite.work"));
+  EXPECT_EQ(run_ensemble(requests, store, processes, {"1", false}, go_on).ended_here, 0u);
+  EXPECT_EQ(begun().size(), 6u) << "a repeated sweep costs nothing";
+}
+
+TEST_F(Runs, OneThatFailsDoesNotStopTheRest) {
+  ResultsStore store(folder / "store.sqlite");
+  LocalProcesses processes(program("echo ' 12 %  about 3 s left'; case $n in 2) echo 'seed 1: it blew up'; "
+                                   "exit 1;; 3) kill -9 $$;; 4) exit 0;; esac"),
+                           2);
+  EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
+  EXPECT_EQ(end.done, 3u);
+  EXPECT_EQ(end.failed, 3u);
+  EXPECT_EQ(store.find("key2")->message, "seed 1: it blew up");
+  EXPECT_EQ(store.find("key3")->message, "killed by signal 9");
+  EXPECT_NE(store.find("key4")->message.find("not a summary"), std::string::npos);
+  end = run_ensemble(requests, store, processes, {"1", false}, go_on);
+  EXPECT_EQ(end.ended_here, 0u);
+  LocalProcesses mended(program(""), 2);
+  end = run_ensemble(requests, store, mended, {"1", true}, go_on);
+  EXPECT_EQ(end.ended_here, 3u);
+  EXPECT_EQ(end.done, 6u);
+}
+
+TEST_F(Runs, InterruptedOnesAreGivenBackAndEnd) {
+  ResultsStore store(folder / "store.sqlite");
+  LocalProcesses processes(program("echo $$ > \"$4.pid\"; exec sleep 100"), 2);
+  const auto start = std::chrono::steady_clock::now();
+  const EnsembleProgress end =
+      run_ensemble(requests, store, processes, {"1", false}, [&](const EnsembleProgress&) {
+        return std::chrono::steady_clock::now() - start < std::chrono::milliseconds(500);
+      });
+  EXPECT_EQ(end.here, 2u);
+  for (const RunRequest& run : requests) EXPECT_FALSE(store.find(run.key).has_value());
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+  EXPECT_FALSE(fs::exists(folder / "store.sqlite.work"));
+}
+
+}  // namespace
+}  // namespace scree

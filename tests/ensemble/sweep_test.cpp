@@ -1,0 +1,141 @@
+// Sweep files: what they give, and what is said about wrong ones.
+#include "cli/ensemble/sweep.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "cli/ensemble/run_request.h"
+#include "scree_version.h"
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+namespace scree {
+namespace {
+
+const fs::path kAssets = fs::path(SCREE_SOURCE_DIR) / "assets";
+const std::string kScenario = std::string(SCREE_SOURCE_DIR) + "/scenarios/repose_lab.yaml";
+
+class SweepFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder = fs::temp_directory_path() / ("scree_sweep_" + std::to_string(getpid()));
+    fs::create_directories(folder);
+  }
+  void TearDown() override { fs::remove_all(folder); }
+  SweepResult load(const std::string& text) {
+    std::ofstream(folder / "friction.yaml") << "scenario: " << kScenario << "\n" << text;
+    return load_sweep(folder / "friction.yaml", kAssets);
+  }
+  std::string first_error(const std::string& text) {
+    const SweepResult result = load(text);
+    return result.errors.empty() ? "" : result.errors.front().text();
+  }
+  fs::path folder;
+};
+
+TEST_F(SweepFile, GridIsEveryCombinationTheLastFastest) {
+  const SweepResult r = load(
+      "seeds: [4, 5]\nset: {experiment.mass_kg: 10}\n"
+      "design: {type: grid, parameters: {material.mu: [0.1, 0.2], material.mu_r: [0.3, 0.4, 0.5]}}\n");
+  ASSERT_TRUE(r.errors.empty()) << r.errors.front().text();
+  EXPECT_EQ(r.sweep.name, "friction");
+  EXPECT_THAT(r.sweep.parameters, ElementsAre("material.mu", "material.mu_r"));
+  EXPECT_THAT(r.sweep.seeds, ElementsAre(4u, 5u));
+  ASSERT_EQ(r.sweep.points.size(), 6u);
+  EXPECT_THAT(r.sweep.points[0].values, ElementsAre("0.1", "0.3"));
+  EXPECT_THAT(r.sweep.points[1].values, ElementsAre("0.1", "0.4"));
+  EXPECT_THAT(r.sweep.points[5].values, ElementsAre("0.2", "0.5"));
+  EXPECT_EQ(r.sweep.points[5].scenario.material.mu, 0.2);
+  EXPECT_EQ(r.sweep.points[5].scenario.material.mu_r, 0.5);
+  EXPECT_EQ(std::get<ReposeLift>(r.sweep.points[5].scenario.experiment).mass, 10);
+}
+
+TEST_F(SweepFile, TiedKeyFollows) {
+  const SweepResult r = load(
+      "ties: {material.mu_r: material.mu}\ndesign: {type: list, points: [{material.mu: 0.25}, {material.mu: "
+      "0.5}]}\n");
+  ASSERT_TRUE(r.errors.empty()) << r.errors.front().text();
+  EXPECT_EQ(r.sweep.points[0].scenario.material.mu_r, 0.25);
+  EXPECT_EQ(r.sweep.points[1].scenario.material.mu_r, 0.5);
+  EXPECT_EQ(r.sweep.seeds.size(), 10u) << "those of the scenario";
+}
+
+TEST_F(SweepFile, RandomDesignsStayInTheirRanges) {
+  for (const char* type : {"latin_hypercube", "sobol"}) {
+    const SweepResult r = load(std::string("design: {type: ") + type +
+                               ", points: 20, parameters: {material.mu: {from: 0.2, to: 0.3}, "
+                               "material.mu_r: {from: 0.4, to: 0.8}}}\n");
+    ASSERT_TRUE(r.errors.empty()) << r.errors.front().text();
+    ASSERT_EQ(r.sweep.points.size(), 20u);
+    for (const SweepPoint& p : r.sweep.points) {
+      EXPECT_GE(p.scenario.material.mu, 0.2);
+      EXPECT_LE(p.scenario.material.mu, 0.3);
+      EXPECT_GE(p.scenario.material.mu_r, 0.4);
+      EXPECT_LE(p.scenario.material.mu_r, 0.8);
+    }
+  }
+}
+
+TEST_F(SweepFile, WrongOnesAreToldWithTheirPlace) {
+  EXPECT_THAT(first_error("desing: {}\n"), HasSubstr("friction.yaml:2:1: unknown key 'desing'"));
+  EXPECT_THAT(first_error("seeds: [1]\n"), HasSubstr("'design' is missing"));
+  EXPECT_THAT(first_error("design: {type: cube}\n"), HasSubstr("one of grid, list, latin_hypercube, sobol"));
+  EXPECT_THAT(first_error("design: {type: grid, parameters: {material.mu: 0.2}}\n"),
+              HasSubstr("a list of values is expected"));
+  EXPECT_THAT(first_error("design: {type: grid, parameters: {material.nu: [0.2]}}\n"),
+              HasSubstr("material.nu"));
+  EXPECT_THAT(first_error("design: {type: grid, parameters: {material.mu: [-1]}}\n"),
+              HasSubstr("out of range"));
+  EXPECT_THAT(first_error("design: {type: list, points: [{material.mu: 0.2}, {material.mu_r: 0.2}]}\n"),
+              HasSubstr("material.mu is missing"));
+  EXPECT_THAT(
+      first_error("design: {type: sobol, points: 0, parameters: {material.mu: {from: 0.1, to: 0.2}}}\n"),
+      HasSubstr("an integer from 1"));
+  EXPECT_THAT(
+      first_error("design: {type: sobol, points: 4, parameters: {material.mu: {from: 0.3, to: 0.2}}}\n"),
+      HasSubstr("must be above"));
+  EXPECT_THAT(first_error("ties: {material.mu_r: material.alpha}\n"
+                          "design: {type: grid, parameters: {material.mu: [0.2]}}\n"),
+              HasSubstr("is no parameter; there are material.mu"));
+  EXPECT_THAT(first_error("seeds: [3, 3]\ndesign: {type: grid, parameters: {material.mu: [0.2]}}\n"),
+              HasSubstr("stands twice"));
+  EXPECT_THAT(load_sweep(folder / "missing.yaml", kAssets).errors.front().text(), HasSubstr("no such file"));
+}
+
+TEST_F(SweepFile, KeyIsThatOfTheNumbersAlone) {
+  const auto key = [&](const std::vector<std::string>& overrides, std::uint64_t seed, const char* version) {
+    ScenarioResult loaded = load_scenario(kScenario, overrides, kAssets);
+    EXPECT_TRUE(loaded.errors.empty());
+    return run_request(loaded.scenario, seed, version, kAssets).key;
+  };
+  const std::string key0 = key({}, 1, "1");
+  EXPECT_EQ(key0.size(), 32u);
+  EXPECT_EQ(key({"title=Another", "output.frame_interval_s=0.5", "compare=[]"}, 1, "1"), key0);
+  EXPECT_NE(key({}, 2, "1"), key0);
+  EXPECT_NE(key({}, 1, "2"), key0);
+  EXPECT_NE(key({"material.mu=0.21"}, 1, "1"), key0);
+  // The content of a file counts, not its name.
+  fs::copy(kAssets / "gradings" / "Lab0.csv", folder / "mine.csv");
+  const std::string mine = "grading=" + (folder / "mine.csv").string();
+  EXPECT_EQ(key({mine}, 1, "1"), key0);
+  std::ofstream(folder / "mine.csv", std::ios::app) << "\n";
+  EXPECT_NE(key({mine}, 1, "1"), key0);
+}
+
+TEST_F(SweepFile, ResolvedScenarioIsOneItself) {
+  ScenarioResult loaded = load_scenario(kScenario, {}, kAssets);
+  const RunRequest request = run_request(loaded.scenario, 17, "1", kAssets);
+  std::ofstream(folder / "resolved.yaml") << request.scenario;
+  ScenarioResult again = load_scenario(folder / "resolved.yaml", {}, kAssets);
+  ASSERT_TRUE(again.errors.empty()) << again.errors.front().text();
+  EXPECT_THAT(again.scenario.seeds, ElementsAre(17u));
+  EXPECT_EQ(run_request(again.scenario, 17, "1", kAssets).key, request.key);
+}
+
+}  // namespace
+}  // namespace scree
