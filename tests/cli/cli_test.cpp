@@ -14,32 +14,11 @@
 #include <thread>
 
 #include "scree_version.h"
+#include "tests/cli/call.h"
 
 namespace fs = std::filesystem;
 
 namespace {
-
-struct Called {
-  int code;
-  std::string text;  // stdout and stderr
-};
-
-Called call(const std::string& arguments) {
-  const std::string command = std::string(SCREE_BINARY) + " " + arguments + " 2>&1 </dev/null";
-  FILE* pipe = popen(command.c_str(), "r");
-  Called result{-1, ""};
-  char buffer[4096];
-  while (const std::size_t n = fread(buffer, 1, sizeof buffer, pipe)) result.text.append(buffer, n);
-  result.code = WEXITSTATUS(pclose(pipe));
-  return result;
-}
-
-std::string slurp(const fs::path& file) {
-  std::ifstream in(file);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 class Cli : public testing::Test {
  protected:

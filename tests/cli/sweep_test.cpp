@@ -1,0 +1,182 @@
+// Sweeps, calibrations and predictions as a user meets them: killed at any moment, two at once, wrong files.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <regex>
+#include <thread>
+#include <vector>
+
+#include "scree_version.h"
+#include "tests/cli/call.h"
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+namespace {
+
+class SweepCli : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder = fs::temp_directory_path() / ("scree_sweep_cli_" + std::to_string(getpid()));
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    // A bucket of 2 kg: some tenths of a second.
+    write(
+        "sweep.yaml",
+        head +
+            "seeds: [1, 2]\nset: {experiment.mass_kg: 2}\n"
+            "design: {type: grid, parameters: {material.mu: [0.1, 0.2, 0.4], material.mu_r: [0.1, 0.3]}}\n");
+  }
+  void TearDown() override { fs::remove_all(folder); }
+
+  void write(const std::string& name, const std::string& text) { std::ofstream(folder / name) << text; }
+  std::string in_folder(const std::string& name) const { return (folder / name).string(); }
+  // What the store has of the sweep, but for the seconds it took.
+  std::vector<std::string> rows(const std::string& store) {
+    const Called called = call("sweep " + in_folder("sweep.yaml") + " --store " + in_folder(store) +
+                               " --list --export " + in_folder("rows.csv"));
+    EXPECT_EQ(called.code, 0) << called.text;
+    std::vector<std::string> lines;
+    std::istringstream in(slurp(folder / "rows.csv"));
+    for (std::string line; std::getline(in, line);)
+      lines.push_back(std::regex_replace(line, std::regex("(,0\\.1\\.0,)[0-9.]+"), "$1"));
+    return lines;
+  }
+  // Starts the program in the background.
+  pid_t start(const std::vector<std::string>& words) {
+    const pid_t child = fork();
+    if (child != 0) return child;
+    std::vector<char*> arguments;
+    std::string program = SCREE_BINARY;
+    arguments.push_back(program.data());
+    std::vector<std::string> copy = words;
+    for (std::string& word : copy) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    const int file = open(in_folder("log" + std::to_string(getpid())).c_str(), O_WRONLY | O_CREAT, 0644);
+    dup2(file, STDOUT_FILENO), dup2(file, STDERR_FILENO);
+    execv(program.c_str(), arguments.data());
+    _exit(127);
+  }
+  fs::path folder;
+  const std::string head = "scenario: " + std::string(SCREE_SOURCE_DIR) + "/scenarios/repose_lab.yaml\n";
+};
+
+TEST_F(SweepCli, KilledAtAnyMomentItGoesOnToTheSameStore) {
+  const std::string sweep = in_folder("sweep.yaml");
+  ASSERT_EQ(call("sweep " + sweep + " --store " + in_folder("whole.sqlite")).code, 0);
+  const std::vector<std::string> whole = rows("whole.sqlite");
+  ASSERT_EQ(whole.size(), 1u + 6 * 2);
+  for (std::size_t k = 1; k < whole.size(); ++k) EXPECT_THAT(whole[k], HasSubstr(",done,"));
+
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> share(0, 1);
+  int kills = 0, status = 0;
+  for (bool ended = false; !ended;) {
+    const pid_t child = start({"sweep", sweep, "--store", in_folder("killed.sqlite")});
+    const double patience = 0.02 + 0.4 * share(random);
+    const auto begin = std::chrono::steady_clock::now();
+    while (!ended && std::chrono::steady_clock::now() - begin < std::chrono::duration<double>(patience)) {
+      ended = waitpid(child, &status, WNOHANG) == child;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    if (ended) break;
+    kill(child, SIGKILL);
+    waitpid(child, &status, 0);
+    ASSERT_LT(++kills, 500) << "it comes no further";
+  }
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_GE(kills, 3);
+  EXPECT_EQ(rows("killed.sqlite"), whole);
+  EXPECT_FALSE(fs::exists(folder / "killed.sqlite.work")) << "nothing is left of what was killed";
+}
+
+TEST_F(SweepCli, TwoAtOnceDoEachRunOnce) {
+  std::vector<pid_t> children;
+  for (int k = 0; k < 2; ++k)
+    children.push_back(
+        start({"sweep", in_folder("sweep.yaml"), "--jobs", "1", "--store", in_folder("both.sqlite")}));
+  int done_here = 0;
+  for (const pid_t child : children) {
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_EQ(WEXITSTATUS(status), 0);
+    std::smatch found;
+    const std::string text = slurp(folder / ("log" + std::to_string(child)));
+    ASSERT_TRUE(std::regex_search(text, found, std::regex("\\(([0-9]+) runs done here\\)"))) << text;
+    done_here += std::stoi(found[1]);
+  }
+  EXPECT_EQ(done_here, 12);
+  const std::vector<std::string> both = rows("both.sqlite");
+  for (std::size_t k = 1; k < both.size(); ++k) EXPECT_THAT(both[k], HasSubstr(",done,"));
+}
+
+TEST_F(SweepCli, InterruptGivesBackAndSaysHowToGoOn) {
+  const pid_t child = start({"sweep", in_folder("sweep.yaml"), "--store", in_folder("store.sqlite")});
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  kill(child, SIGINT);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_THAT(slurp(folder / ("log" + std::to_string(child))), HasSubstr("the same command goes on"));
+  for (const std::string& row : rows("store.sqlite")) EXPECT_THAT(row, testing::Not(HasSubstr(",running,")));
+}
+
+TEST_F(SweepCli, PredictsAndCalibratesFromTheStore) {
+  // A bucket of 6 kg gives a heap that has an angle.
+  const std::string six = "seeds: [1, 2]\nset: {experiment.mass_kg: 6}\nties: {material.mu_r: material.mu}\n",
+                    store = " --store " + in_folder("store.sqlite"), sweep = in_folder("six.yaml");
+  write("six.yaml", head + six + "design: {type: grid, parameters: {material.mu: [0.1, 0.2, 0.4]}}\n");
+  ASSERT_EQ(call("sweep " + sweep + store + " --plot " + in_folder("angles.svg")).code, 0);
+  EXPECT_TRUE(fs::exists(folder / "angles.svg"));
+  const Called asked = call("predict " + sweep + store + " material.mu=0.3");
+  EXPECT_EQ(asked.code, 0);
+  EXPECT_THAT(asked.text, HasSubstr("from 6 runs"));
+  const Called outside = call("predict " + sweep + store + " material.mu=0.9");
+  EXPECT_EQ(outside.code, 2);
+  EXPECT_THAT(outside.text, HasSubstr("outside of what was simulated, 0.1 to 0.4"));
+
+  write("calibration.yaml", head + six +
+                                "parameters: {material.mu: {from: 0.1, to: 0.4}}\n"
+                                "targets: [{output: angle_deg, value: 24, uncertainty: 2}]\n"
+                                "method: {type: bayes, first: 5, most: 8}\n");
+  const Called found =
+      call("calibrate " + in_folder("calibration.yaml") + store + " --out " + in_folder("found"));
+  ASSERT_EQ(found.code, 0) << found.text;
+  const auto json = nlohmann::json::parse(slurp(folder / "found" / "calibration.json"));
+  const auto& mu = json["parameters"]["material.mu"];
+  EXPECT_GT(mu["value"].get<double>(), mu["interval_90"][0].get<double>());
+  EXPECT_LT(mu["value"].get<double>(), mu["interval_90"][1].get<double>());
+  EXPECT_LE(json["simulations"].get<int>(), 8);
+  for (const char* name : {"material.yaml", "posterior.csv", "runs.csv", "calibration.svg"})
+    EXPECT_TRUE(fs::exists(folder / "found" / name)) << name;
+  // The material is one that a scenario can take over.
+  write("mine.yaml",
+        "extends: found/material.yaml\ntitle: Mine\ngrading: Lab0\nexperiment: {type: repose_lift}\n");
+  EXPECT_EQ(call("validate " + in_folder("mine.yaml")).code, 0)
+      << call("validate " + in_folder("mine.yaml")).text;
+}
+
+TEST_F(SweepCli, WrongInputIsOneLineAndExitCodeTwo) {
+  const std::string store = " --store " + in_folder("store.sqlite");
+  write("bad.yaml", head + "design: {type: cube}\n");
+  write("text.sqlite", "this is a text file that is long enough for the library to look at it as a database");
+  for (const std::string& arguments :
+       {"sweep " + in_folder("missing.yaml") + store, "sweep " + in_folder("bad.yaml") + store,
+        "sweep " + in_folder("sweep.yaml") + " --list --store " + in_folder("none.sqlite"),
+        "sweep " + in_folder("sweep.yaml") + " --store " + in_folder("text.sqlite"),
+        "calibrate " + in_folder("sweep.yaml") + store + " --out " + in_folder("x"),
+        "predict " + in_folder("sweep.yaml") + " --store " + in_folder("none.sqlite") + " material.mu=0.2"}) {
+    const Called called = call(arguments);
+    EXPECT_EQ(called.code, 2) << arguments << "\n" << called.text;
+    EXPECT_FALSE(called.text.empty()) << arguments;
+  }
+}
+
+}  // namespace
