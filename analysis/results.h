@@ -32,6 +32,7 @@ struct SeedResult {
   std::vector<Grain> original;                 ///< every grain as generated (ids, diameters, masses)
   std::vector<SectionTable> sections;          ///< one for each number of sections asked for (end dumping)
   std::optional<ReposeAngle> repose;           ///< repose test
+  std::optional<double> rebound_height;        ///< drop test, m
   std::vector<std::array<double, 2>> profile;  ///< slope profile (x, z) m: surface along the dump axis
   std::optional<double> slope_angle;           ///< degrees, fitted to the middle of the profile
 };

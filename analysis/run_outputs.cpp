@@ -33,6 +33,8 @@ std::map<std::string, double> run_outputs(const std::string& summary) {
     if (json.contains("repose"))
       for (const auto& [name, spread] : json.at("repose").items()) add(outputs, name, of_seed(spread));
     if (json.contains("slope_angle")) add(outputs, "slope_angle_deg", of_seed(json.at("slope_angle")));
+    if (json.contains("rebound_height_m"))
+      add(outputs, "rebound_height_m", of_seed(json.at("rebound_height_m")));
     for (const Json& section : json.at("sections"))
       for (const auto& [name, spread] : section.items())
         if (spread.is_object())

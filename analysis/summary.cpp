@@ -214,6 +214,11 @@ void write_summary(const RunResult& result, const std::filesystem::path& file) {
     out["slope_angle"] = spread(each(result, [](const SeedResult& seed) {
       return seed.slope_angle.value_or(std::numeric_limits<double>::quiet_NaN());
     }));
+  if (std::any_of(seeds.begin(), seeds.end(),
+                  [](const SeedResult& seed) { return seed.rebound_height.has_value(); }))
+    out["rebound_height_m"] = spread(each(result, [](const SeedResult& seed) {
+      return seed.rebound_height.value_or(std::numeric_limits<double>::quiet_NaN());
+    }));
   out["comparison"] = rows;
   out["notes"] = result.notes;
   // Text from a scenario may hold bytes that are no UTF-8; they are replaced rather than refused.

@@ -57,6 +57,8 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
     for (const RunOutcome::AfterDump& after : outcome.after_dumps) add_tables(after.pile.grains, after.dump);
     r.profile = slope_profile(r.final_state.grains);
     r.slope_angle = slope_angle(r.profile, dump->bench.height);
+  } else if (outcome.rebound_height) {
+    r.rebound_height = outcome.rebound_height;
   } else if (!r.final_state.grains.empty()) {
     r.repose = measure_repose(r.final_state.grains);
   }

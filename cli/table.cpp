@@ -45,6 +45,13 @@ void print_result(const RunResult& result) {
                  mean([](const Section& x) { return x.d50_rel; }).mean);
     }
   }
+  std::vector<double> rebound;
+  for (const SeedResult& s : result.seeds)
+    if (s.rebound_height) rebound.push_back(*s.rebound_height);
+  if (!rebound.empty()) {
+    const MeanStd height = mean_std(rebound);
+    fmt::print("\nrebound height {} m\n", with_std(height.mean, height.std));
+  }
   std::vector<double> angle, half, fit;
   for (const SeedResult& s : result.seeds)
     if (s.repose) {

@@ -13,12 +13,13 @@ int run_validate(const std::filesystem::path& file, const std::vector<std::strin
   const scree::Scenario& scenario = result.scenario;
   const scree::Grading grading = scree::read_grading(scenario.grading_file);
   const double mass = scree::total_mass(scenario);
-  const bool dump = std::holds_alternative<scree::EndDump>(scenario.experiment);
+  const bool one_rock = std::holds_alternative<scree::DropTest>(scenario.experiment);
   std::string seeds;
   for (const auto seed : scenario.seeds) seeds += (seeds.empty() ? "" : ", ") + std::to_string(seed);
   fmt::print("{}: ok: {}, engine {}, grading {}, {:g} t, about {:.0f} spheres, seeds {}\n", file.string(),
-             dump ? "end_dump" : "repose_lift",
+             scree::experiment_type(scenario),
              scenario.engine == scree::EngineKind::rrlinear ? "rrlinear" : "impulse", grading.name(),
-             mass / 1000, scree::estimated_spheres(grading, mass, scenario.material.density), seeds);
+             mass / 1000, one_rock ? 1.0 : scree::estimated_spheres(grading, mass, scenario.material.density),
+             seeds);
   return 0;
 }

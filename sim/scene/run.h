@@ -2,6 +2,7 @@
 // From a scenario and a seed to a pile.
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,8 +41,9 @@ struct RunOutcome {
     int dump;
     Snapshot pile;
   };
-  std::vector<AfterDump> after_dumps;  ///< the piles asked for in output.after_dumps, but for the last
-  std::vector<Grain> original;         ///< every grain as generated
+  std::vector<AfterDump> after_dumps;    ///< the piles asked for in output.after_dumps, but for the last
+  std::vector<Grain> original;           ///< every grain as generated
+  std::optional<double> rebound_height;  ///< drop test: highest rise of its lowest point after the fall, m
   std::int64_t fixed_balls = 0;
   WorldStatistics statistics;
   double simulated_seconds = 0, wall_seconds = 0;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -85,6 +86,12 @@ struct ReposeLift {
   BaseLayer base_layer = BaseLayer::none;
 };
 
+/// One rock falls on a floor.
+struct DropTest {
+  double diameter = 0.1;  ///< m
+  double height = 1.0;    ///< of its lowest point over the floor, m
+};
+
 /// A load comes to rest when less than `moving_mass_share` of the mass moves faster than `speed`.
 struct StopRule {
   double speed = 0.1;  ///< m/s
@@ -117,7 +124,7 @@ struct Scenario {
   std::vector<std::uint64_t> seeds{10001};
   Material material;
   std::filesystem::path grading_file;
-  std::variant<EndDump, ReposeLift> experiment;
+  std::variant<EndDump, ReposeLift, DropTest> experiment;
   std::vector<ToolSpec> tools;
   StopRule stop;
   Numerics numerics;
@@ -125,6 +132,9 @@ struct Scenario {
   std::vector<std::string> compare;  ///< names of reference cases in assets/reference/results.csv
   std::string resolved_yaml;         ///< the whole scenario with every default filled in
 };
+
+/// Name of the experiment's type in a file: end_dump, repose_lift, drop_test.
+std::string_view experiment_type(const Scenario& scenario);
 
 /// One thing wrong in a scenario file.
 struct ScenarioError {

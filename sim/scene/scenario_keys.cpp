@@ -8,6 +8,9 @@ constexpr Range kScale{1e-6, 1e6};
 constexpr Range kAnywhere{-1e4, 1e4};
 constexpr std::string_view kMetre = "m", kSecond = "s", kDegree = "degrees", kNone = "";
 
+constexpr std::string_view kExperiments[] = {"end_dump", "repose_lift",
+                                             "drop_test"};  // in the order of Scenario::experiment
+
 template <class Enum>
 Choice choice(Enum& value, std::vector<std::string_view> names) {
   return {std::move(names), [&value] { return static_cast<int>(value); },
@@ -116,6 +119,13 @@ Fields keys(ReposeLift& r) {
   };
 }
 
+Fields keys(DropTest& d) {
+  return {
+      {"diameter_m", Number{&d.diameter, kMetre, {0.001, 10}}, "Diameter of the rock."},
+      {"height_m", Number{&d.height, kMetre, {0.001, 100}}, "Height of its lowest point over the floor."},
+  };
+}
+
 Fields keys(Keyframe& k) {
   return {
       {"time_s", Number{&k.time, kSecond, {0, 1e5}},
@@ -184,17 +194,23 @@ Fields keys(OutputSpec& o) {
 
 OneOf experiment(Scenario& s) {
   return {
-      {"end_dump", "repose_lift"},
-      "end_dump: truck loads over the crest of a bench; repose_lift: a container filled with rock is lifted.",
+      {std::begin(kExperiments), std::end(kExperiments)},
+      "end_dump: truck loads over the crest of a bench; repose_lift: a container filled with rock is lifted; "
+      "drop_test: one rock falls on a floor, and its rebound is measured.",
       [&s] { return static_cast<int>(s.experiment.index()); },
       [&s](int index) {
         if (index == 0) s.experiment.emplace<EndDump>();
         if (index == 1) s.experiment.emplace<ReposeLift>();
+        if (index == 2) s.experiment.emplace<DropTest>();
       },
       [&s] { return std::visit([](auto& chosen) { return keys(chosen); }, s.experiment); }};
 }
 
 }  // namespace
+
+std::string_view experiment_type(const Scenario& scenario) {
+  return kExperiments[scenario.experiment.index()];
+}
 
 Fields scenario_keys(Scenario& s) {
   return {

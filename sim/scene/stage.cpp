@@ -8,6 +8,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "sim/scene/scenario_keys.h"
+
 namespace scree {
 namespace {
 
@@ -147,14 +149,13 @@ RunOutcome Stage::finish() {
 
 RunOutcome run_scenario(const Scenario& scenario, std::uint64_t seed, int threads, const RunHooks& hooks) {
   const auto start = std::chrono::steady_clock::now();
-  RunOutcome outcome = std::visit(
-      [&](const auto& experiment) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(experiment)>, EndDump>)
-          return run_end_dump(scenario, experiment, seed, threads, hooks);
-        else
-          return run_repose_lift(scenario, experiment, seed, threads, hooks);
-      },
-      scenario.experiment);
+  RunOutcome outcome =
+      std::visit(Overloaded{
+                     [&](const EndDump& e) { return run_end_dump(scenario, e, seed, threads, hooks); },
+                     [&](const ReposeLift& e) { return run_repose_lift(scenario, e, seed, threads, hooks); },
+                     [&](const DropTest& e) { return run_drop_test(scenario, e, seed, threads, hooks); },
+                 },
+                 scenario.experiment);
   outcome.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return outcome;
 }

@@ -59,5 +59,7 @@ RunOutcome run_end_dump(const Scenario& scenario, const EndDump& experiment, std
                         const RunHooks& hooks);
 RunOutcome run_repose_lift(const Scenario& scenario, const ReposeLift& experiment, std::uint64_t seed,
                            int threads, const RunHooks& hooks);
+RunOutcome run_drop_test(const Scenario& scenario, const DropTest& experiment, std::uint64_t seed,
+                         int threads, const RunHooks& hooks);
 
 }  // namespace scree

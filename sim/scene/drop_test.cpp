@@ -1,0 +1,44 @@
+// One rock that falls on a floor: its rebound gives the local damping.
+#include <algorithm>
+#include <numbers>
+
+#include "sim/scene/ground.h"
+#include "sim/scene/stage.h"
+
+namespace scree {
+namespace {
+constexpr double kLook = 1e-4;      // s between looks at the rock
+constexpr double kMostTime = 1000;  // times the fall without damping
+}  // namespace
+
+RunOutcome run_drop_test(const Scenario& scenario, const DropTest& e, std::uint64_t seed, int threads,
+                         const RunHooks& hooks) {
+  const double radius = 0.5 * e.diameter, wide = 10 * e.diameter;
+  Stage stage(scenario, seed, threads, hooks, {-wide, -wide, -e.diameter},
+              {wide, wide, 2 * (e.height + e.diameter)});
+  RockWorld& world = stage.world();
+  stage.begin({}, {{{Vec3(0, 0, e.height + radius), e.diameter, 1}}});
+  world.add_mesh(make_box({-wide, -wide, -wide}, {wide, wide, 0}), stage.surface({}, {}), Motion());
+  stage.add_tools();
+  stage.set_dump(1, 1);
+  stage.add_load();
+
+  const auto look = [&] { return world.snapshot().grains.front(); };
+  const double fall = std::sqrt(2 * e.height / world.settings().gravity.norm());
+  bool bounced = false;
+  double highest = 0;
+  while (world.time() < kMostTime * fall) {
+    if (!stage.advance(kLook, bounced ? "rebounding" : "falling", bounced ? 0.7 : 0.0, bounced ? 1.0 : 0.7))
+      return stage.finish();
+    const Grain rock = look();
+    const bool rises = rock.velocity.z() > 0;
+    if (bounced && !rises) break;
+    bounced = bounced || rises;
+    if (bounced) highest = std::max(highest, rock.position.z() - radius);
+  }
+  RunOutcome outcome = stage.finish();
+  outcome.rebound_height = highest;
+  return outcome;
+}
+
+}  // namespace scree
