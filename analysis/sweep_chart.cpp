@@ -40,37 +40,42 @@ void draw(const ContourMap& map, const std::filesystem::path& file) {
       grid += fmt::format("{} {} {}\n", map.x[i], map.y[j], std::isfinite(v) ? fmt::format("{}", v) : "NaN");
       if (!std::isfinite(v)) continue;
       low = std::min(low, v), high = std::max(high, v);
-      labels += fmt::format("{} {} {:.1f}\n", map.x[i], map.y[j], v);
     }
     grid += "\n";
   }
+  const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10((high - low) / 10))));
+  const bool few = map.x.size() * map.y.size() <= 100;  // the numbers have room
+  for (std::size_t j = 0; few && j < map.y.size(); ++j)
+    for (std::size_t i = 0; i < map.x.size(); ++i)
+      if (std::isfinite(map.value[j][i]))
+        labels += fmt::format("{} {} {:.{}f}\n", map.x[i], map.y[j], map.value[j][i], decimals);
   const auto thick_line = [&](const std::string& block, double level) {
     return fmt::format(
-        "set contour base\nset cntrparam levels discrete {}\nset table {}\n"
-        "splot $grid using 1:2:3 with lines nosurface\nunset table\nunset contour\n",
+        "set contour base\nset cntrparam levels discrete {}\nunset surface\nset table {}\n"
+        "splot $grid using 1:2:3 with lines\nunset table\nunset contour\nset surface\n",
         level, block);
   };
   std::string script = fmt::format("$grid << END\n{}END\n$labels << END\n{}END\n", grid, labels);
   if (map.target) script += thick_line("$target", *map.target);
   script += fmt::format(
-      "set contour base\nset cntrparam linear\nset cntrparam levels incremental {},{},{}\nset table $lines\n"
-      "splot $grid using 1:2:3 with lines nosurface\nunset table\nunset contour\n",
+      "set contour base\nset cntrparam linear\nset cntrparam levels incremental {},{},{}\nunset surface\nset "
+      "table $lines\n"
+      "splot $grid using 1:2:3 with lines\nunset table\nunset contour\nset surface\n",
       map.spacing * std::floor(low / map.spacing), map.spacing, high);
   script += chart_terminal(kWidth, kHeight) + titles(map.title, map.x_label, map.y_label);
   std::string palette;
   for (int k = 0; k <= 8; ++k)
     palette += fmt::format("{}{} '#{:06x}'", k == 0 ? "" : ", ", k, viridis(k / 8.0));
   script += fmt::format(
-      "set palette defined ({})\nset cblabel {}\nset view map\nset pm3d interpolate 20,20\nunset key\n"
-      "set xrange [{}:{}]\nset yrange [{}:{}]\nset multiplot\n",
+      "set palette defined ({})\nset cblabel {}\nset view map\nset pm3d interpolate 20,20\nunset key\nunset "
+      "grid\n"
+      "set style textbox opaque fillcolor '#ffffff' noborder margins 0.6,0.4\n"
+      "set xrange [{}:{}]\nset yrange [{}:{}]\n",
       palette, gnuplot_quoted(map.value_label), map.x.front(), map.x.back(), map.y.front(), map.y.back());
   script += "splot $grid using 1:2:3 with pm3d, $lines using 1:2:(0) with lines lc rgb '#ffffff' lw 1";
   if (map.diagonal) script += ", [t=0:1] '+' using 1:1:(0) with lines dt 2 lc rgb '#ffffff' lw 1.5";
   if (map.target) script += ", $target using 1:2:(0) with lines lc rgb '#d55e00' lw 3";
-  script +=
-      ", $labels using 1:2:(0):3 with labels tc rgb '#000000' font ',11' offset 0,0.6 point pt 7 ps 0.4 lc "
-      "rgb '#000000'\n";
-  script += "unset multiplot\n";
+  script += ", $labels using 1:2:(0):3 with labels boxed tc rgb '#000000' font ',10'\n";
   run_gnuplot(script, file);
 }
 

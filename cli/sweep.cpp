@@ -172,7 +172,7 @@ bool plot(const scree::Sweep& sweep, const std::vector<PointResults>& points, co
   if (!(low < high)) return false;
   const double rough = (high - low) / 12, power = std::pow(10.0, std::floor(std::log10(rough)));
   map.spacing = power * (rough / power < 1.5 ? 1 : rough / power < 3.5 ? 2 : rough / power < 7.5 ? 5 : 10);
-  map.diagonal = map.x.front() < map.y.back() && map.y.front() < map.x.back();
+  map.diagonal = map.x == map.y;
   scree::draw(map, file);
   return true;
 }
