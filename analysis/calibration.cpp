@@ -8,6 +8,7 @@
 namespace scree {
 namespace {
 constexpr int kSides[] = {401, 61, 21};  // nodes along an axis in 1, 2, 3 dimensions
+constexpr int kLines = 100;              // along an axis, on which a level is looked for
 constexpr double kReach = 0.1;           // of an axis: how far one more simulation teaches something
 }  // namespace
 
@@ -59,13 +60,23 @@ Eigen::VectorXd Posterior::most_likely() const {
       static_cast<std::size_t>(std::max_element(density_.begin(), density_.end()) - density_.begin()));
 }
 
-std::array<double, 2> Posterior::interval(int dimension, double share) const {
+std::vector<double> Posterior::marginal(int dimension) const {
   std::vector<double> marginal(static_cast<std::size_t>(side_), 0.0);
   for (std::size_t node = 0; node < size(); ++node) {
     std::size_t at = node;
     for (int k = 0; k < dimension; ++k) at /= static_cast<std::size_t>(side_);
     marginal[at % static_cast<std::size_t>(side_)] += density_[node];
   }
+  return marginal;
+}
+
+bool Posterior::cut_off(int dimension) const {
+  const std::vector<double> p = marginal(dimension);
+  return std::max(p.front(), p.back()) > *std::max_element(p.begin(), p.end()) / 7;
+}
+
+std::array<double, 2> Posterior::interval(int dimension, double share) const {
+  const std::vector<double> marginal = this->marginal(dimension);
   // Each node stands for a cell about it; the quantile is linear within a cell.
   const auto quantile = [&](double q) {
     double below = 0;
@@ -124,15 +135,49 @@ double crossing(const std::vector<double>& x, const std::vector<double>& value, 
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-std::vector<double> level_line(const std::vector<double>& x, const std::vector<double>& y,
-                               const std::vector<std::vector<double>>& value, double level) {
-  std::vector<double> line;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    std::vector<double> column;
-    for (std::size_t j = 0; j < y.size(); ++j) column.push_back(value[j][i]);
-    line.push_back(crossing(y, column, level));
+double ParameterMap::at(double px, double py) const {
+  const auto cell = [](const std::vector<double>& axis, double v) {
+    const auto above = std::upper_bound(axis.begin(), axis.end() - 1, v) - axis.begin();
+    return static_cast<std::size_t>(std::max<std::ptrdiff_t>(above - 1, 0));
+  };
+  const std::size_t i = cell(x, px), j = cell(y, py);
+  const double s = (px - x[i]) / (x[i + 1] - x[i]), t = (py - y[j]) / (y[j + 1] - y[j]);
+  return (1 - t) * ((1 - s) * value[j][i] + s * value[j][i + 1]) +
+         t * ((1 - s) * value[j + 1][i] + s * value[j + 1][i + 1]);
+}
+
+std::vector<std::array<double, 2>> level_pairs(const ParameterMap& map, double level) {
+  std::vector<std::array<double, 2>> pairs;
+  const auto along = [](const std::vector<double>& axis, int k) {
+    return axis.front() + (axis.back() - axis.front()) * k / kLines;
+  };
+  for (const bool across : {false, true})
+    for (int line = 0; line <= kLines; ++line) {
+      const double fixed = along(across ? map.y : map.x, line);
+      const auto value = [&](double moving) {
+        return (across ? map.at(moving, fixed) : map.at(fixed, moving)) - level;
+      };
+      const std::vector<double>& axis = across ? map.x : map.y;
+      for (int k = 0; k < kLines; ++k) {
+        const double from = along(axis, k), to = along(axis, k + 1), a = value(from), b = value(to);
+        if (!std::isfinite(a) || !std::isfinite(b) || a == b || a * b > 0) continue;
+        const double moving = from + a / (a - b) * (to - from);
+        pairs.push_back(across ? std::array{moving, fixed} : std::array{fixed, moving});
+      }
+    }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+double level_where_equal(const ParameterMap& map, double level) {
+  const double from = std::max(map.x.front(), map.y.front()), to = std::min(map.x.back(), map.y.back());
+  if (!(from < to)) return std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> at, value;
+  for (int k = 0; k <= kLines; ++k) {
+    at.push_back(from + (to - from) * k / kLines);
+    value.push_back(map.at(at.back(), at.back()));
   }
-  return line;
+  return crossing(at, value, level);
 }
 
 }  // namespace scree

@@ -33,6 +33,9 @@ class Posterior {
   Eigen::VectorXd most_likely() const;
   /// Interval of one parameter that holds `share` of the probability, the same below and above.
   std::array<double, 2> interval(int dimension, double share) const;
+  /// True if the probability does not vanish towards an end of a parameter's range: more than a seventh of
+  /// its largest value.
+  bool cut_off(int dimension) const;
   /// How much larger the uncertainty of what is aimed at is than that of the targets alone, because the
   /// emulator is not sure: 0.05 is 5 per cent; mean over the posterior, the worst target.
   double excess_uncertainty() const;
@@ -40,6 +43,7 @@ class Posterior {
   std::vector<Eigen::VectorXd> next_points(int count) const;
 
  private:
+  std::vector<double> marginal(int dimension) const;
   int dimensions_, side_;
   std::size_t targets_;
   std::vector<double> uncertainty_;  // by target
@@ -47,10 +51,19 @@ class Posterior {
   std::vector<Prediction> predictions_;
 };
 
-/// Where a function on a rectangular grid, linear in between, has the value `level`: for each x the first y,
-/// NaN where there is none. `value`: [y][x].
-std::vector<double> level_line(const std::vector<double>& x, const std::vector<double>& y,
-                               const std::vector<std::vector<double>>& value, double level);
+/// A number over two parameters on a rectangular grid, bilinear in between.
+struct ParameterMap {
+  std::vector<double> x, y;                ///< rising, two at least
+  std::vector<std::vector<double>> value;  ///< [y][x]; NaN where nothing is known
+  double at(double x, double y) const;
+};
+
+/// Pairs at which a map has the value `level`, by rising x: crossings of some hundred lines along either
+/// axis.
+std::vector<std::array<double, 2>> level_pairs(const ParameterMap& map, double level);
+
+/// Where a map has the value `level` and both parameters are equal; NaN if nowhere.
+double level_where_equal(const ParameterMap& map, double level);
 
 /// First x at which a line of points (rising x, linear in between) has the value `level`; NaN if nowhere.
 double crossing(const std::vector<double>& x, const std::vector<double>& value, double level);

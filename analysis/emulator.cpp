@@ -24,48 +24,50 @@ double covariance(const Eigen::VectorXd& a, const Eigen::VectorXd& b, const Eige
 
 Emulator::Emulator(const Eigen::MatrixXd& x, const Eigen::VectorXd& y) : x_(x) {
   const auto n = x.rows(), d = x.cols();
-  if (n < 4 || d < 1 || y.size() != n || !x.allFinite() || !y.allFinite())
-    throw std::invalid_argument("an emulator needs 4 finite points at least");
+  if (n < kLeastPoints || n > kMostPoints || d < 1 || d > kMostDimensions || y.size() != n ||
+      !x.allFinite() || !y.allFinite())
+    throw std::invalid_argument("an emulator cannot be made of these points");
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(n);
   // A constant answer has no variance to scale by.
   const double least = 1e-12 * (y.squaredNorm() + 1e-300);
-  Eigen::Index choices = std::ssize(kNoiseRatios);
-  for (Eigen::Index k = 0; k < d; ++k) choices *= std::ssize(kLengths);
-  std::vector<double> log_weight;
-  for (Eigen::Index choice = 0; choice < choices; ++choice) {
+  const double freedom = static_cast<double>(n - 1);
+  // One choice of lengths and noise, and the logarithm of its weight.
+  const auto member = [&](Eigen::Index choice, double& log_weight) {
     Member m;
     m.lengths.resize(d);
-    Eigen::Index rest = choice;
     for (Eigen::Index k = 0; k < d; ++k) {
-      m.lengths[k] = kLengths[rest % std::ssize(kLengths)];
-      rest /= std::ssize(kLengths);
+      m.lengths[k] = kLengths[choice % std::ssize(kLengths)];
+      choice /= std::ssize(kLengths);
     }
-    m.noise_ratio = kNoiseRatios[rest];
+    m.noise_ratio = kNoiseRatios[choice];
     Eigen::MatrixXd r(n, n);
     for (Eigen::Index i = 0; i < n; ++i)
       for (Eigen::Index j = 0; j <= i; ++j)
         r(i, j) = r(j, i) = covariance(x.row(i), x.row(j), m.lengths) + (i == j ? m.noise_ratio : 0.0);
     m.factor.compute(r);
-    if (m.factor.info() != Eigen::Success) continue;
     m.weights_1 = m.factor.solve(ones);
     m.sum_1 = ones.dot(m.weights_1);
     m.mean = m.weights_1.dot(y) / m.sum_1;
     m.weights_y = m.factor.solve(y - m.mean * ones);
     const double misfit = std::max((y - m.mean * ones).dot(m.weights_y), least);
-    const double freedom = static_cast<double>(n - 1);
     m.variance = misfit / std::max(freedom - 2, 1.0);  // that of Student's t
-    log_weight.push_back(-m.factor.matrixLLT().diagonal().array().log().sum() - 0.5 * std::log(m.sum_1) -
-                         0.5 * freedom * std::log(misfit));
-    members_.push_back(std::move(m));
-  }
+    log_weight = -m.factor.matrixLLT().diagonal().array().log().sum() - 0.5 * std::log(m.sum_1) -
+                 0.5 * freedom * std::log(misfit);
+    return m;
+  };
+  Eigen::Index choices = std::ssize(kNoiseRatios);
+  for (Eigen::Index k = 0; k < d; ++k) choices *= std::ssize(kLengths);
+  std::vector<double> log_weight(static_cast<std::size_t>(choices));
+  for (Eigen::Index choice = 0; choice < choices; ++choice)
+    member(choice, log_weight[static_cast<std::size_t>(choice)]);
   const double best = *std::max_element(log_weight.begin(), log_weight.end());
   double sum = 0;
-  for (std::size_t k = 0; k < members_.size(); ++k) {
-    members_[k].weight = std::exp(log_weight[k] - best);
-    if (members_[k].weight < kLeastWeight) members_[k].weight = 0;
-    sum += members_[k].weight;
+  for (Eigen::Index choice = 0; choice < choices; ++choice) {  // only those that count are kept
+    double& weight = log_weight[static_cast<std::size_t>(choice)];
+    if (std::exp(weight - best) < kLeastWeight) continue;
+    members_.push_back(member(choice, weight));
+    sum += members_.back().weight = std::exp(weight - best);
   }
-  std::erase_if(members_, [](const Member& m) { return m.weight == 0; });
   for (Member& m : members_) m.weight /= sum;
 }
 

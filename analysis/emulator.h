@@ -12,6 +12,9 @@
 
 namespace scree {
 
+/// Standard deviations about the mean within which 90 % of a normal distribution lie.
+inline constexpr double kDeviations90 = 1.645;
+
 /// Mean and standard deviation at one point.
 struct Prediction {
   double mean = 0;
@@ -21,11 +24,13 @@ struct Prediction {
 
 class Emulator {
  public:
+  // Beyond these it is not made: a matrix of all points is factored for every choice of lengths.
+  static constexpr Eigen::Index kLeastPoints = 4, kMostPoints = 1000, kMostDimensions = 3;
+
   /// `x`: points of the unit cube, a row each (n x d); the same point may come with several seeds. `y`: what
-  /// the simulation gave (n). Throws std::invalid_argument below 4 points or if they do not fit together.
+  /// the simulation gave (n). Throws std::invalid_argument beyond the limits above.
   Emulator(const Eigen::MatrixXd& x, const Eigen::VectorXd& y);
   Prediction at(const Eigen::VectorXd& x) const;
-  int dimensions() const { return static_cast<int>(x_.cols()); }
 
  private:
   // One choice of lengths and noise.

@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <vector>
+
+#include "analysis/summary.h"
 
 namespace scree {
 namespace {
@@ -22,14 +26,47 @@ const Json& of_seed(const Json& spread) {
 
 }  // namespace
 
+namespace {
+
+const std::vector<std::string>& common_outputs() {
+  static const std::vector<std::string> names{"particles", "simulated_seconds", "largest_overlap_ratio",
+                                              "lost_mass_t", "at_rest"};
+  return names;
+}
+
+std::vector<std::string> outputs_of(const std::string& experiment) {
+  if (experiment == "repose_lift")
+    return {"angle_deg", "half_coverage_deg", "slope_fit_deg", "height_m", "radius_m", "runaways"};
+  if (experiment == "drop_test") return {"rebound_height_m"};
+  std::vector<std::string> names{"slope_angle_deg"};
+  for (const SectionField& field : section_fields()) names.push_back(std::string(field.name) + "_S1");
+  return names;
+}
+
+}  // namespace
+
+bool may_give(const std::string& experiment, const std::string& output) {
+  const std::vector<std::string> names = outputs_of(experiment);
+  const auto& common = common_outputs();
+  if (std::find(names.begin(), names.end(), output) != names.end()) return true;
+  if (std::find(common.begin(), common.end(), output) != common.end()) return true;
+  if (experiment != "end_dump") return false;
+  const auto section = output.rfind('_');  // chi_S6, d50_m_S1
+  return section != std::string::npos &&
+         std::find(names.begin(), names.end(), output.substr(0, section) + "_S1") != names.end();
+}
+
+std::string outputs_given(const std::string& experiment) {
+  return fmt::format("{}, {}", fmt::join(outputs_of(experiment), ", "), fmt::join(common_outputs(), ", ")) +
+         (experiment == "end_dump" ? "; S2, S3 and so on alike" : "");
+}
+
 std::map<std::string, double> run_outputs(const std::string& summary) {
   std::map<std::string, double> outputs;
   try {
     const Json json = Json::parse(summary);
     if (json.at("seeds").size() != 1) throw std::runtime_error("a summary of one seed is expected");
-    for (const char* name :
-         {"particles", "simulated_seconds", "largest_overlap_ratio", "lost_mass_t", "at_rest"})
-      add(outputs, name, json.at(name));
+    for (const std::string& name : common_outputs()) add(outputs, name, json.at(name));
     if (json.contains("repose"))
       for (const auto& [name, spread] : json.at("repose").items()) add(outputs, name, of_seed(spread));
     if (json.contains("slope_angle")) add(outputs, "slope_angle_deg", of_seed(json.at("slope_angle")));

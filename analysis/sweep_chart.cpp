@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "analysis/pictures.h"
 
@@ -15,6 +16,12 @@ constexpr int kWidth = 640, kHeight = 480;
 std::string titles(const std::string& title, const std::string& x, const std::string& y) {
   return fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", gnuplot_quoted(title), gnuplot_quoted(x),
                      gnuplot_quoted(y));
+}
+
+/// 1, 2 or 5 times a power of ten, near a number.
+double round_step(double rough) {
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  return power * (rough / power < 1.5 ? 1 : rough / power < 3.5 ? 2 : rough / power < 7.5 ? 5 : 10);
 }
 
 }  // namespace
@@ -31,51 +38,57 @@ void draw(const LineChart& chart, const std::filesystem::path& file) {
   run_gnuplot(script, file);
 }
 
-void draw(const ContourMap& map, const std::filesystem::path& file) {
+void draw(const ContourMap& picture, const std::filesystem::path& file) {
+  const ParameterMap& map = picture.map;
   double low = INFINITY, high = -INFINITY;
   std::string grid, labels;
   for (std::size_t j = 0; j < map.y.size(); ++j) {
     for (std::size_t i = 0; i < map.x.size(); ++i) {
       const double v = map.value[j][i];
       grid += fmt::format("{} {} {}\n", map.x[i], map.y[j], std::isfinite(v) ? fmt::format("{}", v) : "NaN");
-      if (!std::isfinite(v)) continue;
-      low = std::min(low, v), high = std::max(high, v);
+      if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
     }
     grid += "\n";
   }
+  if (!(low < high)) throw std::invalid_argument("a contour map needs two different numbers");
   const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10((high - low) / 10))));
-  const bool few = map.x.size() * map.y.size() <= 100;  // the numbers have room
+  const std::size_t nodes = map.x.size() * map.y.size();
+  const bool few = nodes <= 100;  // the numbers have room
   for (std::size_t j = 0; few && j < map.y.size(); ++j)
     for (std::size_t i = 0; i < map.x.size(); ++i)
       if (std::isfinite(map.value[j][i]))
         labels += fmt::format("{} {} {:.{}f}\n", map.x[i], map.y[j], map.value[j][i], decimals);
-  const auto thick_line = [&](const std::string& block, double level) {
+
+  const auto contours = [](const std::string& block, const std::string& levels) {
     return fmt::format(
-        "set contour base\nset cntrparam levels discrete {}\nunset surface\nset table {}\n"
+        "set contour base\nset cntrparam levels {}\nunset surface\nset table {}\n"
         "splot $grid using 1:2:3 with lines\nunset table\nunset contour\nset surface\n",
-        level, block);
+        levels, block);
   };
   std::string script = fmt::format("$grid << END\n{}END\n$labels << END\n{}END\n", grid, labels);
-  if (map.target) script += thick_line("$target", *map.target);
-  script += fmt::format(
-      "set contour base\nset cntrparam linear\nset cntrparam levels incremental {},{},{}\nunset surface\nset "
-      "table $lines\n"
-      "splot $grid using 1:2:3 with lines\nunset table\nunset contour\nset surface\n",
-      map.spacing * std::floor(low / map.spacing), map.spacing, high);
-  script += chart_terminal(kWidth, kHeight) + titles(map.title, map.x_label, map.y_label);
+  if (picture.target) script += contours("$target", fmt::format("discrete {}", *picture.target));
+  const double spacing = round_step((high - low) / 12);
+  script += contours("$lines",
+                     fmt::format("incremental {},{},{}", spacing * std::floor(low / spacing), spacing, high));
+  script += chart_terminal(kWidth, kHeight) + titles(picture.title, picture.x_label, picture.y_label);
   std::string palette;
   for (int k = 0; k <= 8; ++k)
     palette += fmt::format("{}{} '#{:06x}'", k == 0 ? "" : ", ", k, viridis(k / 8.0));
+  const int fine = nodes < 400 ? 20 : 1;  // pieces of a cell
   script += fmt::format(
-      "set palette defined ({})\nset cblabel {}\nset view map\nset pm3d interpolate 20,20\nunset key\nunset "
+      "set palette defined ({})\nset cblabel {}\nset view map\nset pm3d interpolate {},{}\nunset key\nunset "
       "grid\n"
-      "set style textbox opaque fillcolor '#ffffff' noborder margins 0.6,0.4\n"
-      "set xrange [{}:{}]\nset yrange [{}:{}]\n",
-      palette, gnuplot_quoted(map.value_label), map.x.front(), map.x.back(), map.y.front(), map.y.back());
+      "set style textbox opaque fillcolor '#ffffff' noborder margins 0.6,0.4\nset xrange [{}:{}]\nset yrange "
+      "[{}:{}]\n",
+      palette, gnuplot_quoted(picture.value_label), fine, fine, map.x.front(), map.x.back(), map.y.front(),
+      map.y.back());
   script += "splot $grid using 1:2:3 with pm3d, $lines using 1:2:(0) with lines lc rgb '#ffffff' lw 1";
-  if (map.diagonal) script += ", [t=0:1] '+' using 1:1:(0) with lines dt 2 lc rgb '#ffffff' lw 1.5";
-  if (map.target) script += ", $target using 1:2:(0) with lines lc rgb '#d55e00' lw 3";
-  script += ", $labels using 1:2:(0):3 with labels boxed tc rgb '#000000' font ',10'\n";
+  if (map.x == map.y)
+    script += fmt::format(", [t={}:{}] '+' using 1:1:(0) with lines dt 2 lc rgb '#ffffff' lw 1.5",
+                          map.x.front(), map.x.back());
+  if (picture.target) script += ", $target using 1:2:(0) with lines lc rgb '#d55e00' lw 3";
+  if (few) script += ", $labels using 1:2:(0):3 with labels boxed tc rgb '#000000' font ',10'";
+  script += "\n";
   run_gnuplot(script, file);
 }
 
@@ -86,7 +99,7 @@ void draw(const CalibrationChart& chart, const std::filesystem::path& file) {
   for (std::size_t k = 0; k < chart.x.size(); ++k)
     script += fmt::format("{} {} {} {}\n", chart.x[k], chart.mean[k], chart.low[k], chart.high[k]);
   script += "END\n" + chart_terminal(kWidth, kHeight) + titles(chart.title, chart.x_label, chart.y_label);
-  const double half = 1.645 * chart.uncertainty;
+  const double half = kDeviations90 * chart.uncertainty;
   script += fmt::format(
       "set key top left\nset xrange [{0}:{1}]\n"
       "set object 1 rectangle from graph 0, first {2} to graph 1, first {3} fs solid 0.25 noborder fc rgb "

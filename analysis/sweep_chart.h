@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/calibration.h"
 #include "analysis/results.h"
 
 namespace scree {
@@ -20,14 +21,11 @@ struct LineChart {
   std::vector<Point> points;
 };
 
-/// Two parameters on a grid, and the number at each node.
+/// Two parameters on a grid, and the number at each node, with contours.
 struct ContourMap {
   std::string title, x_label, y_label, value_label;
-  std::vector<double> x, y;                ///< rising
-  std::vector<std::vector<double>> value;  ///< [y][x]; NaN where nothing is known
-  std::optional<double> target;            ///< drawn as a thick line
-  double spacing = 2;                      ///< between contours
-  bool diagonal = false;                   ///< the line y = x
+  ParameterMap map;
+  std::optional<double> target;  ///< drawn as a thick line
 };
 
 /// What a calibration of one parameter found: simulations, the emulator's 90 % band, the target's.

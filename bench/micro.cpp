@@ -126,7 +126,7 @@ void law_of_four(benchmark::State& state) {
     benchmark::DoNotOptimize(contacts.data());
     benchmark::ClobberMemory();
   }
-  each(state, kContacts, "contact; four lanes, best instruction set");
+  each(state, kContacts, "contact; four lanes, memory in single precision, best instruction set");
 }
 BENCHMARK(law_of_four);
 

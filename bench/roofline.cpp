@@ -21,12 +21,14 @@ namespace {
 
 struct Operations {
   double adds, multiplications, divisions, roots;
+  double single_divisions = 0, single_roots = 0;  // in single precision, on vectors of twice as many
   constexpr double flops() const { return adds + multiplications; }
   constexpr Operations operator+(const Operations& b) const {
-    return {adds + b.adds, multiplications + b.multiplications, divisions + b.divisions, roots + b.roots};
+    return {adds + b.adds,   multiplications + b.multiplications,   divisions + b.divisions,
+            roots + b.roots, single_divisions + b.single_divisions, single_roots + b.single_roots};
   }
   constexpr Operations operator*(double n) const {
-    return {n * adds, n * multiplications, n * divisions, n * roots};
+    return {n * adds, n * multiplications, n * divisions, n * roots, n * single_divisions, n * single_roots};
   }
 };
 
@@ -34,18 +36,18 @@ struct Operations {
 // multiplications.
 constexpr Operations kStiffness = {1, 8, 1, 0};
 // compute() before the law: apart 3 adds; distance 2 adds, 3 multiplications, 1 root, 1 division; normal 3
-// multiplications; overlap 1 add; arms 2 adds, 2 multiplications; against() 12 adds; rim 6 adds, 12
-// multiplications, its arms 1 add, 2 multiplications; velocity 3 adds; twist 2 adds, 4 multiplications.
-constexpr Operations kMotion = {32, 26, 1, 1};
+// multiplications; overlap 1 add; arms 2 adds, 1 multiplication; motions_of() 8 adds; rim 6 adds, 12
+// multiplications; velocity 3 adds; twist 5 adds, 4 multiplications.
+constexpr Operations kMotion = {30, 23, 1, 1};
 // From here on shear and rolling share a register in single precision: an operation on both counts once.
-// turned_with_contact(): flat 5 adds, 6 multiplications; two lengths 3 adds, 4 multiplications; 1 more for
-// the comparison; length of the twist 1 add, 2 multiplications; turn 6 adds, 9 multiplications; stretch 3
-// multiplications, 1 division, 1 root.
-constexpr Operations kTurn = {15, 25, 1, 1};
+// turned_with_contact(): flat 5 adds, 6 multiplications; twist 3 adds, 9 multiplications; two lengths 2 adds,
+// 4 multiplications, 1 more for the comparison; excess 2 adds, 3 multiplications, 1 division; series 2 adds,
+// 3 multiplications; the sum 12 adds, 3 multiplications.
+constexpr Operations kTurn = {26, 29, 0, 0, 1, 0};
 // Rest of contact_step(): fn 1 multiplication; slip and bend 5 adds, 6 multiplications; twist angle 1;
 // increments 3 adds, 3 multiplications; stiffnesses 2, limits 3 multiplications; length 2 adds, 3
 // multiplications, limit squared 1; share 1 division, 1 root; 3 to apply it; force 3 adds, 3 multiplications.
-constexpr Operations kLaw = {13, 26, 1, 1};
+constexpr Operations kLaw = {13, 26, 0, 0, 1, 1};
 // compute() after the law: lever 3 adds, 6 multiplications; two moments 6 adds, 6 multiplications; overlap
 // ratio 1 division. add_force(): four sums of four numbers.
 constexpr Operations kSums = {9 + 16, 12, 1, 0};
@@ -84,6 +86,8 @@ constexpr Traffic kOfSphere[] = {
 constexpr Traffic kOfPair[] = {{"entry", sizeof(Neighbour), 0}};
 // Each closed contact.
 constexpr Traffic kOfContact[] = {{"memory", sizeof(ContactMemory), sizeof(ContactMemory)}};
+// Each listed pair that is open: its memory is fetched ahead all the same.
+constexpr Traffic kOfOpenPair[] = {{"memory fetched in vain", sizeof(ContactMemory), 0}};
 
 template <std::size_t n>
 constexpr double bytes(const Traffic (&table)[n]) {
@@ -168,46 +172,66 @@ void add_and_multiply(Lanes* a, Lanes* m, double more, double times) {
   a[0] = a0, a[1] = a1, a[2] = a2, a[3] = a3, a[4] = a4, a[5] = a5;
   m[0] = m0, m[1] = m1, m[2] = m2, m[3] = m3, m[4] = m4, m[5] = m5;
 }
-SCREE_VECTORISED
-void divide(Lanes* a, double by) {
-  Lanes a0 = a[0], a1 = a[1], a2 = a[2], a3 = a[3], a4 = a[4], a5 = a[5];
-  const Lanes d = Lanes{} + by;
+template <class Vector>
+SCREE_INLINE void divide_by_all(Vector* a, Vector d) {
+  Vector a0 = a[0], a1 = a[1], a2 = a[2], a3 = a[3], a4 = a[4], a5 = a[5];
   for (int k = 0; k < kLinks; ++k)
     a0 = d / a0, a1 = d / a1, a2 = d / a2, a3 = d / a3, a4 = d / a4, a5 = d / a5;
   a[0] = a0, a[1] = a1, a[2] = a2, a[3] = a3, a[4] = a4, a[5] = a5;
 }
-SCREE_VECTORISED
-void take_roots(Lanes* a, double more) {
-  Lanes a0 = a[0], a1 = a[1], a2 = a[2], a3 = a[3], a4 = a[4], a5 = a[5];
-  const Lanes d = Lanes{} + more;  // without it they would all become 1, which may be a fast case
+// `d`: without it they would all become 1, which may be a fast case.
+template <class Vector>
+SCREE_INLINE void take_all_roots(Vector* a, Vector d) {
+  Vector a0 = a[0], a1 = a[1], a2 = a[2], a3 = a[3], a4 = a[4], a5 = a[5];
   for (int k = 0; k < kLinks; ++k) {
     a0 = root(a0 + d), a1 = root(a1 + d), a2 = root(a2 + d);
     a3 = root(a3 + d), a4 = root(a4 + d), a5 = root(a5 + d);
   }
   a[0] = a0, a[1] = a1, a[2] = a2, a[3] = a3, a[4] = a4, a[5] = a5;
 }
+SCREE_VECTORISED
+void divide(Lanes* a) {
+  divide_by_all(a, Lanes{} + 1.3);
+}
+SCREE_VECTORISED
+void divide_single(TwinFloats* a) {
+  divide_by_all(a, TwinFloats{} + 1.3f);
+}
+SCREE_VECTORISED
+void take_roots(Lanes* a) {
+  take_all_roots(a, Lanes{} + 3.0);
+}
+SCREE_VECTORISED
+void take_single_roots(TwinFloats* a) {
+  take_all_roots(a, TwinFloats{} + 3.0f);
+}
 
 struct Arithmetic {
-  double flops;           // additions and multiplications in equal numbers, 1/s
-  double division, root;  // s, each of the numbers in a vector
+  double flops;                         // additions and multiplications in equal numbers, 1/s
+  double division, root;                // s, each of the four numbers in a vector
+  double single_division, single_root;  // s, each of the eight in a vector
 };
 
 Arithmetic arithmetic(int threads) {
-  const auto run = [&](auto&& kernel) {
+  const auto run = [&](auto number, auto&& kernel) {
+    using Vector = decltype(number);
     return shortest([&] {
 #pragma omp parallel num_threads(threads)
       {
-        alignas(32) Lanes a[kChains], m[kChains];
-        for (int k = 0; k < kChains; ++k) a[k] = m[k] = Lanes{} + 1.7;
-        kernel(a, m);
-        asm volatile("" ::"r"(a), "r"(m) : "memory");
+        alignas(32) Vector a[2 * kChains];
+        for (Vector& v : a) v = Vector{} + decltype(number[0] + number[0])(1.7);
+        kernel(a);
+        asm volatile("" ::"r"(a) : "memory");
       }
     });
   };
   const double links = 1.0 * kLinks * kChains * kLanes;  // of one thread
-  return {threads * 2 * links / run([](Lanes* a, Lanes* m) { add_and_multiply(a, m, 1e-9, 1 - 1e-9); }),
-          run([](Lanes* a, Lanes*) { divide(a, 1.3); }) / links,
-          run([](Lanes* a, Lanes*) { take_roots(a, 3.0); }) / links};
+  return {
+      threads * 2 * links / run(Lanes{}, [](Lanes* a) { add_and_multiply(a, a + kChains, 1e-9, 1 - 1e-9); }),
+      run(Lanes{}, [](Lanes* a) { divide(a); }) / links,
+      run(Lanes{}, [](Lanes* a) { take_roots(a); }) / links,
+      run(TwinFloats{}, [](TwinFloats* a) { divide_single(a); }) / (2 * links),
+      run(TwinFloats{}, [](TwinFloats* a) { take_single_roots(a); }) / (2 * links)};
 }
 
 // --- The step.
@@ -268,9 +292,11 @@ const char* instruction_set() {
 
 void print_counts() {
   const auto row = [](const char* what, const Operations& o) {
-    fmt::print("  {:34}{:8}{:8}{:8}{:8}\n", what, o.adds, o.multiplications, o.divisions, o.roots);
+    fmt::print("  {:34}{:8}{:8}{:8}{:8}{:14}{:8}\n", what, o.adds, o.multiplications, o.divisions, o.roots,
+               o.single_divisions, o.single_roots);
   };
-  fmt::print("\noperations                              adds   mults    divs   roots\n");
+  fmt::print(
+      "\noperations                              adds   mults    divs   roots  single: divs   roots\n");
   row("contact: stiffness", kStiffness);
   row("contact: motion", kMotion);
   row("contact: two memories turned", kTurn);
@@ -287,10 +313,12 @@ void print_counts() {
   rows("sphere", kOfSphere);
   rows("listed pair", kOfPair);
   rows("contact", kOfContact);
+  rows("open pair", kOfOpenPair);
 }
 
 void print_limits(const Step& s, const Arithmetic& a, double l3, double memory) {
-  const double moved = bytes(kOfSphere) + s.pairs * bytes(kOfPair) + s.contacts * bytes(kOfContact);
+  const double moved = bytes(kOfSphere) + s.pairs * bytes(kOfPair) + s.contacts * bytes(kOfContact) +
+                       (s.pairs - s.contacts) * bytes(kOfOpenPair);
   const Operations contact = of_contact(),
                    sphere = contact * s.contacts + kPair * (s.pairs - s.contacts) + kSphere;
   fmt::print(
@@ -305,7 +333,11 @@ void print_limits(const Step& s, const Arithmetic& a, double l3, double memory) 
     fmt::print("  {:26}{:13.2f}{:23.2f}{:19.1f}{:20.1f}\n", what, 1e9 * of_contact_s, 1e9 * of_sphere_s,
                s.seconds / of_sphere_s, (s.forces + s.moves) / of_sphere_s);
   };
-  const auto slow = [&](const Operations& o) { return o.divisions * a.division + o.roots * a.root; };
+  // Shear and rolling share a vector: two numbers of a contact.
+  const auto slow = [&](const Operations& o) {
+    return o.divisions * a.division + o.roots * a.root +
+           2 * (o.single_divisions * a.single_division + o.single_roots * a.single_root);
+  };
   row("adds and multiplications", contact.flops() / a.flops, sphere.flops() / a.flops);
   row("divisions and roots", slow(contact), slow(sphere));
   row("bandwidth of L3", bytes(kOfContact) / l3, moved / l3);
@@ -338,9 +370,9 @@ void run(const std::string& file) {
     const Arithmetic a = arithmetic(threads);
     if (threads == 1) one = a;
     fmt::print(
-        "  adds and multiplications {:.1f} GFLOP/s; a division {:.3f} ns, a root {:.3f} ns, in vectors of "
-        "{}\n",
-        1e-9 * a.flops, 1e9 * a.division, 1e9 * a.root, kLanes);
+        "  adds and multiplications {:.1f} GFLOP/s; a division {:.3f} ns, a root {:.3f} ns, in single "
+        "precision {:.3f} and {:.3f} ns\n",
+        1e-9 * a.flops, 1e9 * a.division, 1e9 * a.root, 1e9 * a.single_division, 1e9 * a.single_root);
   }
   print_counts();
   print_limits(measure(file.empty() ? lab_packing(5.0, 0.60) : read_packing(file)), one, triads[1],

@@ -35,6 +35,8 @@ struct CalibrateOptions {
   std::filesystem::path store;  ///< empty: runs/store.sqlite
   std::filesystem::path out;    ///< empty: runs/NAME
   int jobs = 0;                 ///< 0: as many as cores
+  bool again = false;           ///< try runs that failed before again
+  bool force = false;           ///< write into a folder that is not empty
 };
 
 struct PredictOptions {

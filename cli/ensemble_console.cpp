@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <charconv>
 #include <chrono>
 #include <thread>
 
 #include "cli/commands.h"
 #include "cli/progress.h"
 #include "scree_version.h"
+#include "sim/scene/scenario_values.h"
 
 namespace fs = std::filesystem;
 
@@ -40,37 +40,35 @@ int side_by_side(int jobs) {
 
 scree::EnsembleProgress run_with_progress(const std::vector<scree::RunRequest>& runs,
                                           scree::ResultsStore& store, int jobs, bool again) {
-  scree::LocalProcesses processes(fs::read_symlink("/proc/self/exe"), side_by_side(jobs));
+  scree::LocalProcesses processes(side_by_side(jobs));
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const auto start = std::chrono::steady_clock::now();
   double shown = -1e9;
-  std::size_t known_before = 0;
   bool line_open = false;
   const auto report = [&](const scree::EnsembleProgress& p) {
     const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (shown < 0) known_before = p.done + p.failed - p.ended_here;
     if (elapsed - shown < (terminal ? kTerminalInterval : kPlainInterval)) return interrupted == 0;
     shown = elapsed;
-    const double left = static_cast<double>(p.runs - known_before) - p.share_here;
+    const double left = static_cast<double>(p.runs - p.done - p.failed) - p.share_under_way;
     std::string text = fmt::format("{} of {} runs", p.done + p.failed, p.runs);
     if (p.failed > 0) text += fmt::format(" ({} failed)", p.failed);
     text += fmt::format(", {} under way", p.here);
     if (p.others > 0) text += fmt::format(", {} by others", p.others);
-    if (p.share_here > 0.05 && left > 0)
-      text += fmt::format(", about {} left", scree::spell_duration(elapsed * left / p.share_here));
+    const double work = static_cast<double>(p.ended_here) + p.share_under_way;
+    if (work > 0.05 && left > 0)
+      text += fmt::format(", about {} left", scree::spell_duration(elapsed * left / work));
     fmt::print(stderr, "{}{}{}", terminal ? "\r\033[K" : "", text, terminal ? "" : "\n");
     std::fflush(stderr);
     line_open = terminal;
     return interrupted == 0;
   };
-  const auto progress = scree::run_ensemble(runs, store, processes, {SCREE_VERSION, again}, report);
+  const auto progress = scree::run_ensemble(
+      runs, store, processes, {fmt::format("{} ({})", SCREE_VERSION, SCREE_REVISION), again}, report);
   if (line_open) fmt::print(stderr, "\n");
   return progress;
 }
 
 std::optional<double> number_of(const std::string& text) {
   double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
+  return scree::parse_number(text, value) == scree::Parsed::yes ? std::optional(value) : std::nullopt;
 }

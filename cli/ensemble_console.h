@@ -2,6 +2,8 @@
 // What sweep, calibrate and predict share on the command line.
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "cli/ensemble/ensemble.h"

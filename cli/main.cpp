@@ -95,6 +95,8 @@ int main(int argc, char** argv) {
   calibrate_app->add_option("file", calibrate.file, "Calibration file (YAML)")->required();
   calibrate_app->add_option("--store", calibrate.store, "Results store; default: runs/store.sqlite");
   calibrate_app->add_option("--out", calibrate.out, "Folder for the result; default: runs/NAME");
+  calibrate_app->add_flag("--again", calibrate.again, "Try runs that failed before again");
+  calibrate_app->add_flag("--force", calibrate.force, "Write into --out even if it holds something");
   calibrate_app->add_option("--jobs", calibrate.jobs, "Runs side by side; default: as many as cores")
       ->check(CLI::Range(1, 1024));
   calibrate_app->footer(

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "analysis/emulator.h"
+#include "analysis/run_outputs.h"
 #include "cli/commands.h"
 #include "cli/ensemble/run_request.h"
 #include "cli/ensemble/sweep.h"
@@ -13,8 +14,6 @@
 #include "scree_version.h"
 
 namespace {
-
-constexpr double kDeviations90 = 1.645;  // of a normal distribution: what 90 % lie within
 
 struct Axis {
   double low = INFINITY, high = -INFINITY;
@@ -37,6 +36,14 @@ int run_predict(const PredictOptions& options) {
   if (!store) return kBadInput;
   const std::string output = options.output.empty() ? "angle_deg" : options.output;
 
+  const std::string type(scree::experiment_type(sweep.points.front().scenario));
+  if (!scree::may_give(type, output))
+    return refuse(fmt::format("--output {}: a scenario of type {} does not give it; it gives {}", output,
+                              type, scree::outputs_given(type)));
+  if (std::ssize(sweep.parameters) > scree::Emulator::kMostDimensions)
+    return refuse(fmt::format("{} parameters; {} are the most for a prediction", sweep.parameters.size(),
+                              scree::Emulator::kMostDimensions));
+
   std::vector<Axis> axes(sweep.parameters.size());
   std::vector<std::vector<double>> at;
   std::vector<double> values;
@@ -51,8 +58,8 @@ int run_predict(const PredictOptions& options) {
     }
     for (const std::uint64_t seed : sweep.seeds) {
       const auto found =
-          store->find(scree::run_request(point.scenario, seed, SCREE_VERSION, asset_dir()).key);
-      if (!found || !found->outputs.contains(output)) continue;
+          store->find(scree::run_request(point.scenario, seed, scree::results_version(), asset_dir()).key);
+      if (!found || !found->at_rest() || !found->outputs.contains(output)) continue;
       at.push_back(numbers);
       values.push_back(found->outputs.at(output));
       for (std::size_t k = 0; k < axes.size(); ++k) {
@@ -65,6 +72,10 @@ int run_predict(const PredictOptions& options) {
     return refuse(
         fmt::format("the store has {} runs of this sweep with '{}', 4 are needed; run: scree sweep {}",
                     values.size(), output, options.file.string()));
+
+  if (std::ssize(values) > scree::Emulator::kMostPoints)
+    return refuse(fmt::format("the store has {} runs of this sweep; {} are the most for a prediction",
+                              values.size(), scree::Emulator::kMostPoints));
 
   std::map<std::string, double> asked;
   for (const std::string& text : options.values) {
@@ -80,7 +91,7 @@ int run_predict(const PredictOptions& options) {
       return refuse(
           fmt::format("a value of {} is needed (between {} and {})", name, axes[k].low, axes[k].high));
     const double value = asked.at(name);
-    if (value < axes[k].low || value > axes[k].high)
+    if (!(value >= axes[k].low && value <= axes[k].high))
       return refuse(fmt::format("{}={} is outside of what was simulated, {} to {}", name, value, axes[k].low,
                                 axes[k].high));
     point[static_cast<Eigen::Index>(k)] = axes[k].share(value);
@@ -97,10 +108,10 @@ int run_predict(const PredictOptions& options) {
   const scree::Emulator emulator(
       x, Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
   const scree::Prediction p = emulator.at(point);
-  const double one = kDeviations90 * std::hypot(p.std, p.noise), mean = kDeviations90 * p.std;
-  fmt::print("{} = {:.2f}\n", output, p.mean);
-  fmt::print("90 % interval of the mean over seeds: {:.2f} to {:.2f}\n", p.mean - mean, p.mean + mean);
-  fmt::print("90 % interval of one seed:            {:.2f} to {:.2f}\n", p.mean - one, p.mean + one);
+  const double one = scree::kDeviations90 * std::hypot(p.std, p.noise), mean = scree::kDeviations90 * p.std;
+  fmt::print("{} = {:.4g}\n", output, p.mean);
+  fmt::print("90 % interval of the mean over seeds: {:.4g} to {:.4g}\n", p.mean - mean, p.mean + mean);
+  fmt::print("90 % interval of one seed:            {:.4g} to {:.4g}\n", p.mean - one, p.mean + one);
   fmt::print("from {} runs\n", values.size());
   return kOk;
 }

@@ -1,6 +1,5 @@
 // scree run: a scenario, its seeds side by side, and what comes of it in a folder.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -14,6 +13,7 @@
 #include "analysis/report.h"
 #include "analysis/summary.h"
 #include "cli/commands.h"
+#include "cli/output_folder.h"
 #include "cli/progress.h"
 #include "cli/results_of.h"
 #include "cli/table.h"
@@ -23,13 +23,6 @@
 namespace fs = std::filesystem;
 
 namespace {
-
-// runs/NAME, or the first of runs/NAME-2, ... that is not there.
-fs::path free_folder(const std::string& name) {
-  fs::path folder = fs::path("runs") / name;
-  for (int k = 2; fs::exists(folder); ++k) folder = fs::path("runs") / fmt::format("{}-{}", name, k);
-  return folder;
-}
 
 void write_text(const fs::path& file, const std::string& text) {
   std::ofstream out(file);
@@ -107,19 +100,8 @@ int run_run(const RunOptions& options) {
   if (!loaded.errors.empty()) return kBadInput;
   scree::Scenario& scenario = loaded.scenario;
 
-  const fs::path out = options.out.empty() ? free_folder(scenario.name) : options.out;
-  if (!options.force && fs::exists(out) && !(fs::is_directory(out) && fs::is_empty(out))) {
-    fmt::print(stderr, "{}: is there already; choose another --out, or --force to write into it\n",
-               out.string());
-    return kBadInput;
-  }
-  std::error_code error;
-  fs::create_directories(out, error);
-  if (error || access(out.c_str(), W_OK) != 0) {
-    fmt::print(stderr, "{}: cannot be written: {}; choose another --out\n", out.string(),
-               error ? error.message() : "no permission");
-    return kBadInput;
-  }
+  const fs::path out = options.out.empty() ? free_run_folder(scenario.name) : options.out;
+  if (!prepare_folder(out, options.force)) return kBadInput;
   scenario.seeds = chosen_seeds(scenario, options.seeds);
   write_text(out / "scenario.yaml", scenario.resolved_yaml);
 

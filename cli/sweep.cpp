@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "analysis/run_outputs.h"
 #include "analysis/sweep_chart.h"
 #include "cli/commands.h"
 #include "cli/ensemble/run_request.h"
@@ -56,6 +57,7 @@ std::set<std::string> outputs_of(const std::vector<PointResults>& points) {
 // What is shown unless asked otherwise.
 std::vector<std::string> main_outputs(const std::set<std::string>& all) {
   if (all.contains("angle_deg")) return {"angle_deg", "half_coverage_deg", "slope_fit_deg"};
+  if (all.contains("rebound_height_m")) return {"rebound_height_m"};
   std::vector<std::string> chi;
   for (const std::string& name : all)
     if (name.starts_with("chi_")) chi.push_back(name);
@@ -78,7 +80,11 @@ void print_points(const scree::Sweep& sweep, const std::vector<PointResults>& po
                                           : fmt::format("{:.3f} +- {:.3f}", both.mean, both.std));
     }
     const int failed = p.count(scree::RunState::failed);
-    fmt::print("{}\n", failed > 0 ? fmt::format("  {} failed", failed) : "");
+    const auto restless = std::count_if(p.runs.begin(), p.runs.end(), [](const auto& run) {
+      return run && run->state == scree::RunState::done && !run->at_rest();
+    });
+    fmt::print("{}{}\n", failed > 0 ? fmt::format("  {} failed", failed) : "",
+               restless > 0 ? fmt::format("  {} not at rest", restless) : "");
   }
 }
 
@@ -154,26 +160,22 @@ bool plot(const scree::Sweep& sweep, const std::vector<PointResults>& points, co
     for (const auto& point : at) all.insert(point[k]);
     return std::vector<double>(all.begin(), all.end());
   };
-  scree::ContourMap map;
-  map.title = sweep.name;
-  map.x_label = sweep.parameters[0], map.y_label = sweep.parameters[1], map.value_label = output;
+  scree::ContourMap picture{sweep.name, sweep.parameters[0], sweep.parameters[1], output, {}, std::nullopt};
+  scree::ParameterMap& map = picture.map;
   map.x = values(0), map.y = values(1);
   if (map.x.size() < 2 || map.y.size() < 2 || map.x.size() * map.y.size() != points.size()) return false;
   map.value.assign(map.y.size(), std::vector<double>(map.x.size(), NAN));
-  double low = INFINITY, high = -INFINITY;
+  std::set<double> different;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const auto i = std::lower_bound(map.x.begin(), map.x.end(), at[k][0]) - map.x.begin();
     const auto j = std::lower_bound(map.y.begin(), map.y.end(), at[k][1]) - map.y.begin();
     const scree::MeanStd both = points[k].of(output);
     if (both.n == 0) continue;
     map.value[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)] = both.mean;
-    low = std::min(low, both.mean), high = std::max(high, both.mean);
+    different.insert(both.mean);
   }
-  if (!(low < high)) return false;
-  const double rough = (high - low) / 12, power = std::pow(10.0, std::floor(std::log10(rough)));
-  map.spacing = power * (rough / power < 1.5 ? 1 : rough / power < 3.5 ? 2 : rough / power < 7.5 ? 5 : 10);
-  map.diagonal = map.x == map.y;
-  scree::draw(map, file);
+  if (different.size() < 2) return false;
+  scree::draw(picture, file);
   return true;
 }
 
@@ -190,11 +192,18 @@ int run_sweep(const SweepOptions& options) {
   for (const scree::SweepPoint& point : sweep.points) {
     points.push_back({&point, {}, {}});
     for (const std::uint64_t seed : sweep.seeds) {
-      points.back().requests.push_back(scree::run_request(point.scenario, seed, SCREE_VERSION, asset_dir()));
+      points.back().requests.push_back(
+          scree::run_request(point.scenario, seed, scree::results_version(), asset_dir()));
       requests.push_back(points.back().requests.back());
     }
   }
   const bool only_look = options.list || options.failed;
+  const std::string type(scree::experiment_type(sweep.points.front().scenario));
+  if (!options.output.empty() && !scree::may_give(type, options.output)) {
+    fmt::print(stderr, "--output {}: a scenario of type {} does not give it; it gives {}\n", options.output,
+               type, scree::outputs_given(type));
+    return kBadInput;
+  }
   const std::unique_ptr<scree::ResultsStore> store = open_store(options.store, only_look);
   if (!store) return kBadInput;
   scree::EnsembleProgress progress;
@@ -205,17 +214,16 @@ int run_sweep(const SweepOptions& options) {
     print_failed(sweep, points);
   } else {
     const std::set<std::string> all = outputs_of(points);
-    std::vector<std::string> shown = main_outputs(all);
-    if (!options.output.empty()) {
-      if (!all.empty() && !all.contains(options.output)) {
-        fmt::print(stderr, "--output {}: no such number; there are {}\n", options.output,
-                   fmt::join(all, ", "));
-        return kBadInput;
-      }
-      shown = {options.output};
-    }
+    const std::vector<std::string> shown =
+        options.output.empty() ? main_outputs(all) : std::vector<std::string>{options.output};
     print_points(sweep, points, shown);
-    if (!options.plot.empty()) {
+    if (!options.csv.empty()) {
+      write_csv(sweep, points, options.csv);
+      fmt::print("table: {}\n", options.csv.string());
+    }
+    if (!only_look)
+      fmt::print("store: {} ({} runs done here)\n", store->file().string(), progress.ended_here);
+    if (!options.plot.empty() && !interrupted) {
       if (shown.empty() || !plot(sweep, points, shown.front(), options.plot)) {
         fmt::print(stderr,
                    "--plot: needs results over one numeric parameter, or over two that form a grid\n");
@@ -224,12 +232,6 @@ int run_sweep(const SweepOptions& options) {
       fmt::print("picture: {}\n", options.plot.string());
     }
   }
-  if (!options.csv.empty()) {
-    write_csv(sweep, points, options.csv);
-    fmt::print("table: {}\n", options.csv.string());
-  }
-  if (only_look) return kOk;
-  fmt::print("store: {} ({} runs done here)\n", store->file().string(), progress.ended_here);
   if (interrupted) {
     fmt::print(stderr, "interrupted; the same command goes on from here\n");
     return kInterrupted;

@@ -47,10 +47,7 @@ class Calibrator {
       for (std::size_t k = 0; k < result_.runs.size(); ++k)
         if (std::isfinite(result_.values[k][t])) known.push_back(k);
       if (known.size() < 4)
-        throw std::runtime_error(
-            fmt::format("fewer than 4 simulations gave '{}'; is that a number of this scenario? (scree sweep "
-                        "FILE --failed says why runs fail)",
-                        spec_.targets[t].output));
+        throw std::runtime_error(fmt::format("fewer than 4 simulations gave '{}'", spec_.targets[t].output));
       Eigen::MatrixXd x(static_cast<Eigen::Index>(known.size()), dimensions());
       Eigen::VectorXd y(static_cast<Eigen::Index>(known.size()));
       for (std::size_t k = 0; k < known.size(); ++k) {
@@ -125,6 +122,76 @@ class Calibrator {
 };
 
 }  // namespace
+
+namespace {
+
+constexpr double kShare = 0.9;  // of the probability that an interval holds
+
+ParameterMap map_of(const CalibrationSpec& spec, const CalibrationResult& result) {
+  ParameterMap map;
+  const bool grid = !result.grid.empty();
+  const int side = grid ? spec.grid_points : result.posterior->side();
+  for (int k = 0; k < side; ++k) {
+    const double share = static_cast<double>(k) / (side - 1);
+    map.x.push_back(parameter_value(spec, 0, share));
+    map.y.push_back(parameter_value(spec, 1, share));
+  }
+  for (int j = 0; j < side; ++j) {
+    map.value.emplace_back();
+    for (int i = 0; i < side; ++i) {
+      const auto node = static_cast<std::size_t>(j * side + i);
+      map.value.back().push_back(grid ? result.grid[0][node] : result.posterior->prediction(node, 0).mean);
+    }
+  }
+  return map;
+}
+
+bool are_mu_and_mu_r(const std::vector<FileReader::Span>& parameters) {
+  return parameters.size() == 2 && parameters[0].key != parameters[1].key &&
+         std::all_of(parameters.begin(), parameters.end(), [](const FileReader::Span& p) {
+           return p.key == "material.mu" || p.key == "material.mu_r";
+         });
+}
+
+}  // namespace
+
+CalibrationAnswer answer_of(const CalibrationSpec& spec, const CalibrationResult& result) {
+  CalibrationAnswer answer;
+  const Posterior& posterior = *result.posterior;
+  const auto dimensions = static_cast<int>(spec.parameters.size());
+  const double level = spec.targets[0].value;
+  const auto found = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
+  if (dimensions == 1 && !result.grid.empty()) {
+    std::vector<double> x;
+    for (int k = 0; k < spec.grid_points; ++k)
+      x.push_back(parameter_value(spec, 0, static_cast<double>(k) / (spec.grid_points - 1)));
+    answer.interpolated = found(crossing(x, result.grid[0], level));
+  }
+  if (dimensions == 2) {
+    answer.map = map_of(spec, result);
+    answer.line = level_pairs(*answer.map, level);
+    if (are_mu_and_mu_r(spec.parameters)) answer.equal = found(level_where_equal(*answer.map, level));
+  }
+  Eigen::VectorXd at = dimensions == 1 ? posterior.mean() : posterior.most_likely();
+  if (answer.equal)
+    for (int k = 0; k < dimensions; ++k) {
+      const FileReader::Span& span = spec.parameters[static_cast<std::size_t>(k)];
+      at[k] = (*answer.equal - span.from) / (span.to - span.from);
+    }
+  for (int k = 0; k < dimensions; ++k) {
+    answer.value.push_back(parameter_value(spec, k, at[k]));
+    const auto [low, high] = posterior.interval(k, kShare);
+    answer.interval.push_back({parameter_value(spec, k, low), parameter_value(spec, k, high)});
+    answer.cut_off.push_back(posterior.cut_off(k));
+  }
+  for (std::size_t t = 0; t < spec.targets.size(); ++t) {
+    answer.at_value.push_back(result.emulators[t]->at(at));
+    const Prediction& p = answer.at_value.back();
+    answer.missed_by.push_back((p.mean - spec.targets[t].value) /
+                               std::hypot(p.std, spec.targets[t].uncertainty));
+  }
+  return answer;
+}
 
 double parameter_value(const CalibrationSpec& spec, int parameter, double share) {
   const FileReader::Span& span = spec.parameters[static_cast<std::size_t>(parameter)];

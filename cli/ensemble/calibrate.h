@@ -1,8 +1,11 @@
 #pragma once
 // The loop of a calibration: simulate where it helps, emulate, find the parameters that meet the targets.
 #include <Eigen/Dense>
+#include <array>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "analysis/calibration.h"
@@ -33,6 +36,24 @@ struct CalibrationResult {
   /// Grid only, by target: means over seeds at the nodes, the first parameter fastest.
   std::vector<std::vector<double>> grid;
 };
+
+/// What a calibration answers.
+struct CalibrationAnswer {
+  std::vector<double> value;                    ///< of each parameter
+  std::vector<std::array<double, 2>> interval;  ///< of each parameter, 90 % of the probability
+  std::vector<bool> cut_off;                    ///< the range of the parameter cuts the probability off
+  std::vector<Prediction> at_value;             ///< of each target
+  /// By how many standard deviations (target's and emulator's) each target is missed.
+  std::vector<double> missed_by;
+  std::optional<double> interpolated;       ///< grid of one parameter: linear between its points
+  std::optional<ParameterMap> map;          ///< two parameters: the first target's number over them
+  std::vector<std::array<double, 2>> line;  ///< two parameters: pairs that give the first target
+  std::optional<double> equal;              ///< mu and mu_r: where both are equal
+};
+
+/// One parameter: the mean of the posterior. mu and mu_r: where they are equal and give the target, as the
+/// thesis chose among all pairs that do; without such a pair, and for other parameters, the most likely ones.
+CalibrationAnswer answer_of(const CalibrationSpec& spec, const CalibrationResult& result);
 
 /// A value of a parameter from its share of the way between its ends, and as text for a scenario.
 double parameter_value(const CalibrationSpec& spec, int parameter, double share);

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "analysis/emulator.h"
 #include "sim/scene/scenario_values.h"
 
 namespace scree {
@@ -60,8 +63,8 @@ void read_method(const YamlNode& root, CalibrationSpec& spec, FileReader& reader
     integer("points", spec.grid_points, 2, 50);
   } else if (name == "bayes") {
     reader.allow(*method, {"type", "first", "most", "enough"}, " in method bayes");
-    integer("first", spec.first_points, 4, 1000);
-    integer("most", spec.most_simulations, 4, 10000);
+    integer("first", spec.first_points, static_cast<int>(Emulator::kLeastPoints), 500);
+    integer("most", spec.most_simulations, 4, static_cast<int>(Emulator::kMostPoints));
     if (const YamlEntry* entry = method->find("enough"))
       spec.enough = reader.number(entry->value, "enough").value_or(spec.enough);
     if (spec.most_simulations < spec.first_points)
@@ -95,6 +98,12 @@ CalibrationSpecResult load_calibration(const fs::path& file) {
     spec.seeds = reader.seeds(*list);
   read_targets(*root, file, scenario, spec, reader);
   read_method(*root, spec, reader);
+  const double nodes = std::pow(spec.grid_points, static_cast<double>(spec.parameters.size()));
+  const double runs = nodes * static_cast<double>(spec.seeds.size());
+  constexpr double kLeast = Emulator::kLeastPoints, kMost = Emulator::kMostPoints;
+  if (reader.good() && spec.method == CalibrationSpec::Method::grid && (runs < kLeast || runs > kMost))
+    reader.fail(root->place,
+                fmt::format("{} simulations (points, seeds); allowed {} to {}", runs, kLeast, kMost));
   return result;
 }
 

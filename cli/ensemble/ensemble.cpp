@@ -35,16 +35,26 @@ class Ensemble {
     for (const RunRequest& run : runs)
       if (keys.insert(run.key).second) waiting_.push_back(&run);
     progress_.runs = waiting_.size();
+    // What is known already is counted first, so that the time left is that of the rest.
+    std::erase_if(waiting_, [&](const RunRequest* run) {
+      const auto known = store_.find(run->key);
+      const bool failed = known && known->state == RunState::failed && !settings_.again;
+      if (failed) ++progress_.failed;
+      if (known && known->state == RunState::done) ++progress_.done;
+      return failed || (known && known->state == RunState::done);
+    });
   }
   ~Ensemble() {
     executor_.cancel();
     for (const std::string& key : under_way_) {
+      forget_folder(key);  // before another program may claim the run and make its own
       try {
         store_.release(key);
       } catch (const std::exception&) {  // it is free again when this program has ended
       }
-      forget_folder(key);
     }
+    std::error_code ignored;
+    fs::remove(work_folder(), ignored);  // if nobody works in it
   }
   Ensemble(const Ensemble&) = delete;
   Ensemble& operator=(const Ensemble&) = delete;
@@ -53,7 +63,7 @@ class Ensemble {
     double alive = now();
     while (true) {
       start_what_can_be();
-      const auto ended = executor_.wait(waiting_.empty() && under_way_.empty() ? 0 : kPatience);
+      const auto ended = executor_.wait(idle() ? 0 : kPatience);
       if (ended) settle(*ended);
       if (now() - alive > kSignOfLife) {
         store_.sign_of_life();
@@ -62,21 +72,19 @@ class Ensemble {
       progress_.here = under_way_.size();
       progress_.others = left_to_others_.size();
       const std::vector<double> shares = executor_.shares();
-      progress_.share_here =
-          static_cast<double>(progress_.ended_here) + std::accumulate(shares.begin(), shares.end(), 0.0);
+      progress_.share_under_way = std::accumulate(shares.begin(), shares.end(), 0.0);
       if (!report(progress_)) return progress_;
-      if (waiting_.empty() && under_way_.empty() && left_to_others_.empty()) return progress_;
+      if (idle()) return progress_;
     }
   }
 
  private:
-  fs::path folder_of(const std::string& key) const {
-    return fs::path(store_.file().string() + ".work") / key;
-  }
+  bool idle() const { return waiting_.empty() && under_way_.empty() && left_to_others_.empty(); }
+  fs::path work_folder() const { return store_.file().string() + ".work"; }
+  fs::path folder_of(const std::string& key) const { return work_folder() / key; }
   void forget_folder(const std::string& key) const {
     std::error_code ignored;
     fs::remove_all(folder_of(key), ignored);
-    fs::remove(folder_of(key).parent_path(), ignored);  // if it is empty
   }
 
   void start_what_can_be() {
@@ -110,7 +118,9 @@ class Ensemble {
     const fs::path folder = folder_of(run.key);
     std::error_code error;
     fs::remove_all(folder, error);  // of one that was killed
-    fs::create_directories(folder, error);
+    // Another program that has just ended may take the empty parent away in between.
+    for (int k = 0; k < 3 && !fs::create_directories(folder, error) && error; ++k) {
+    }
     if (error) fail_to_write(folder, error.message());
     write_text_file(folder / "scenario.yaml", run.scenario);
     executor_.start({run.key, folder});
@@ -118,10 +128,9 @@ class Ensemble {
 
   void settle(const EndedJob& ended) {
     under_way_.erase(ended.key);
-    ++progress_.ended_here;
     std::string failure = ended.message, text;
     std::map<std::string, double> outputs;
-    if (ended.good) {
+    if (ended.end == JobEnd::good) {
       try {
         std::ifstream in(folder_of(ended.key) / "run" / "summary.json");
         std::ostringstream summary;
@@ -132,14 +141,13 @@ class Ensemble {
         failure = error.what();
       }
     }
-    if (failure.empty()) {
-      store_.finish(ended.key, text, outputs, ended.wall_seconds);
-      ++progress_.done;
-    } else {
-      store_.fail(ended.key, failure, ended.wall_seconds);
-      ++progress_.failed;
-    }
     forget_folder(ended.key);
+    if (ended.end == JobEnd::interrupted) return store_.release(ended.key);
+    const bool ours = failure.empty() ? store_.finish(ended.key, text, outputs, ended.wall_seconds)
+                                      : store_.fail(ended.key, failure, ended.wall_seconds);
+    if (!ours) return;  // it was taken for dead, and another program does the run now
+    ++progress_.ended_here;
+    failure.empty() ? ++progress_.done : ++progress_.failed;
   }
 
   ResultsStore& store_;

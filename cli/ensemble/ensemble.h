@@ -23,7 +23,7 @@ struct EnsembleProgress {
   std::size_t here = 0;        ///< under way in this program
   std::size_t others = 0;      ///< under way in others
   std::size_t ended_here = 0;  ///< ended in this program, well or badly
-  double share_here = 0;       ///< runs' worth of work that this program has done, begun ones in part
+  double share_under_way = 0;  ///< sum of the shares done of the runs under way in this program
 };
 
 /// Brings every run into the store: does those that are not there, leaves those that others do to them (and

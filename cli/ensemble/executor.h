@@ -15,10 +15,13 @@ struct Job {
   std::filesystem::path folder;  ///< holds scenario.yaml
 };
 
-/// A run that has ended, well or badly.
+/// `interrupted`: by a signal to all, as when the machine is shut down.
+enum class JobEnd { good, bad, interrupted };
+
+/// A run that has ended.
 struct EndedJob {
   std::string key;
-  bool good = false;
+  JobEnd end = JobEnd::bad;
   std::string message;  ///< the last words of one that ended badly
   double wall_seconds = 0;
 };
@@ -41,7 +44,8 @@ class Executor {
 /// it ends.
 class LocalProcesses final : public Executor {
  public:
-  LocalProcesses(std::filesystem::path program, int places);
+  /// `program`: this very program, even if its file was replaced meanwhile, unless a test names another.
+  explicit LocalProcesses(int places, std::filesystem::path program = "/proc/self/exe");
   ~LocalProcesses() override;
   int free_places() const override;
   void start(const Job& job) override;

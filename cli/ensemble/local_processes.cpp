@@ -19,6 +19,7 @@
 namespace scree {
 namespace {
 
+constexpr int kInterrupted = 130;                      // exit status of a run that was asked to end
 constexpr auto kLook = std::chrono::milliseconds(20);  // between looks at the processes
 
 double now() {
@@ -48,18 +49,20 @@ double share_in(const std::filesystem::path& log) {
   return share;
 }
 
-// What a run said besides its progress, in one line.
+// Why a run failed, in its own words: what it says of its seed, or else its last line.
 std::string words_in(const std::filesystem::path& log) {
-  std::string text;
-  for (const std::string& line : lines_of(log))
-    if (!share_of(line)) text += (text.empty() ? "" : "; ") + line;
-  constexpr std::size_t kMost = 500;
-  return text.size() > kMost ? text.substr(text.size() - kMost) : text;
+  std::string of_seed, last;
+  for (const std::string& line : lines_of(log)) {
+    if (share_of(line)) continue;
+    if (line.starts_with("seed ") && line.find("particle-steps/s") == std::string::npos) of_seed = line;
+    last = line;
+  }
+  return of_seed.empty() ? last : of_seed;
 }
 
 }  // namespace
 
-LocalProcesses::LocalProcesses(std::filesystem::path program, int places)
+LocalProcesses::LocalProcesses(int places, std::filesystem::path program)
     : program_(std::move(program)), places_(places) {}
 
 LocalProcesses::~LocalProcesses() {
@@ -101,9 +104,14 @@ std::optional<EndedJob> LocalProcesses::wait(double patience) {
     for (auto process = processes_.begin(); process != processes_.end(); ++process) {
       int status = 0;
       if (waitpid(process->pid, &status, WNOHANG) != process->pid) continue;
-      EndedJob ended{
-          process->job.key, WIFEXITED(status) && WEXITSTATUS(status) == 0, {}, now() - process->started};
-      if (!ended.good) {
+      const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+      EndedJob ended{process->job.key,
+                     code == 0              ? JobEnd::good
+                     : code == kInterrupted ? JobEnd::interrupted
+                                            : JobEnd::bad,
+                     {},
+                     now() - process->started};
+      if (ended.end == JobEnd::bad) {
         const std::string words = words_in(process->job.folder / "log.txt");
         ended.message = WIFSIGNALED(status) ? fmt::format("killed by signal {}", WTERMSIG(status))
                         : words.empty()     ? fmt::format("exit status {}", WEXITSTATUS(status))

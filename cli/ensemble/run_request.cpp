@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "scree_version.h"
 #include "sim/scene/scenario_read.h"
 
 namespace scree {
@@ -32,6 +33,10 @@ void replace_by_content(std::filesystem::path& file) {
 }
 
 }  // namespace
+
+std::string results_version() {
+  return fmt::format("{} results {}", SCREE_VERSION, kResultsRevision);
+}
 
 RunRequest run_request(Scenario scenario, std::uint64_t seed, const std::string& version,
                        const std::filesystem::path& asset_dir) {

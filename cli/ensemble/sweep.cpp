@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "cli/ensemble/design.h"
 #include "cli/ensemble/file_reader.h"
@@ -127,13 +126,15 @@ SweepResult load_sweep(const fs::path& file, const fs::path& asset_dir) {
   const auto scenario = scenario_at(*root, file, true, reader);
   if (!reader.good()) return result;
 
-  std::set<std::string> told;  // a fault that several points share is told once
   for (SweepPoint& point : sweep.points) {
     ScenarioResult loaded =
         load_scenario(*scenario, overrides_of(variation, sweep.parameters, point.values), asset_dir);
-    for (const ScenarioError& error : loaded.errors)
-      if (told.insert(error.text()).second) result.errors.push_back(error);
     point.scenario = std::move(loaded.scenario);
+    if (loaded.errors.empty()) continue;
+    // Other points are wrong in the same way, most likely.
+    for (const ScenarioError& error : loaded.errors)
+      reader.fail(root->place, "a point is no scenario: " + error.text());
+    return result;
   }
   if (!reader.good()) return result;
   if (root->find("seeds") == nullptr)

@@ -1,9 +1,9 @@
 #pragma once
-// Four contacts side by side in one vector register.
+// Four contacts side by side in vector registers: four doubles, or twice four floats.
 //
 // Vector types of the compiler (GCC), so the same source runs everywhere: functions that use them
 // are compiled for several instruction sets and the best is chosen when the program starts
-// (SCREE_VECTORISED). Every lane does what one double would do, without fused operations, so the numbers are
+// (SCREE_VECTORISED). Every lane does what one number would do, without fused operations, so the numbers are
 // the same on all of them.
 #include <cmath>
 
@@ -120,11 +120,17 @@ SCREE_INLINE LaneVector<LaneFloats> narrow(const LaneVec3& v) {
 SCREE_INLINE TwinFloats twin(LaneFloats first, LaneFloats second) {
   return __builtin_shufflevector(first, second, 0, 1, 2, 3, 4, 5, 6, 7);
 }
-SCREE_INLINE LaneFloats first(TwinFloats v) {
+SCREE_INLINE LaneFloats first_half(TwinFloats v) {
   return __builtin_shufflevector(v, v, 0, 1, 2, 3);
 }
-SCREE_INLINE LaneFloats second(TwinFloats v) {
+SCREE_INLINE LaneFloats second_half(TwinFloats v) {
   return __builtin_shufflevector(v, v, 4, 5, 6, 7);
+}
+SCREE_INLINE LaneVec3 wide_first(const LaneVector<TwinFloats>& v) {
+  return {wide(first_half(v.x_)), wide(first_half(v.y_)), wide(first_half(v.z_))};
+}
+SCREE_INLINE LaneVec3 wide_second(const LaneVector<TwinFloats>& v) {
+  return {wide(second_half(v.x_)), wide(second_half(v.y_)), wide(second_half(v.z_))};
 }
 
 // Quads in memory and lanes in registers.

@@ -41,7 +41,8 @@ double now() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-// Time at which a process started, in ticks since the machine did; empty when it is not there.
+// Time at which a process started, in ticks since the machine did; empty when it is not there, or is dead and
+// only waits for its parent to notice.
 std::string start_of(const std::string& pid) {
   std::ifstream in("/proc/" + pid + "/stat");
   std::string line;
@@ -50,7 +51,10 @@ std::string start_of(const std::string& pid) {
   if (name_end == std::string::npos) return {};
   std::istringstream fields(line.substr(name_end + 1));
   std::string field;
-  for (int k = 3; k <= 22; ++k) fields >> field;  // proc(5): starttime is field 22
+  for (int k = 3; k <= 22; ++k) {  // proc(5): state is field 3, starttime field 22
+    fields >> field;
+    if (k == 3 && (field == "Z" || field == "X")) return {};
+  }
   return field;
 }
 
@@ -74,7 +78,8 @@ bool lives(const std::string& owner, double seen) {
   const auto second = owner.rfind('|'), first = owner.rfind('|', second - 1);
   if (second == std::string::npos || first == std::string::npos) return false;
   if (owner.substr(0, first) != place_of_processes()) return now() - seen < ResultsStore::kLostAfter;
-  return start_of(owner.substr(first + 1, second - first - 1)) == owner.substr(second + 1);
+  const std::string start = start_of(owner.substr(first + 1, second - first - 1));
+  return !start.empty() && start == owner.substr(second + 1);
 }
 
 // A prepared statement.
@@ -202,7 +207,7 @@ Claim ResultsStore::claim(const RunRequest& run, const std::string& version, boo
   return Claim::ours;
 }
 
-void ResultsStore::finish(const std::string& key, const std::string& summary,
+bool ResultsStore::finish(const std::string& key, const std::string& summary,
                           const std::map<std::string, double>& outputs, double wall_seconds) {
   Transaction transaction(db_);
   Statement(db_,
@@ -213,7 +218,7 @@ void ResultsStore::finish(const std::string& key, const std::string& summary,
       .with(key)
       .with(owner_)
       .step();
-  if (sqlite3_changes(db_) == 0) return;
+  if (sqlite3_changes(db_) == 0) return false;
   for (const auto& [name, value] : outputs)
     Statement(db_, "INSERT OR REPLACE INTO outputs (key, name, value) VALUES (?, ?, ?)")
         .with(key)
@@ -221,9 +226,10 @@ void ResultsStore::finish(const std::string& key, const std::string& summary,
         .with(value)
         .step();
   transaction.commit();
+  return true;
 }
 
-void ResultsStore::fail(const std::string& key, const std::string& message, double wall_seconds) {
+bool ResultsStore::fail(const std::string& key, const std::string& message, double wall_seconds) {
   Statement(db_,
             "UPDATE runs SET state = 'failed', owner = NULL, seen = NULL, wall_seconds = ?, message = ? "
             "WHERE key = ? AND owner = ?")
@@ -232,6 +238,7 @@ void ResultsStore::fail(const std::string& key, const std::string& message, doub
       .with(key)
       .with(owner_)
       .step();
+  return sqlite3_changes(db_) > 0;
 }
 
 void ResultsStore::release(const std::string& key) {

@@ -32,6 +32,10 @@ struct StoredResult {
   std::string message;  ///< why it failed
   double wall_seconds = 0;
   std::map<std::string, double> outputs;  ///< by name (run_outputs.h)
+  bool at_rest() const {
+    const auto found = outputs.find("at_rest");
+    return found == outputs.end() || found->second != 0;
+  }
 };
 
 enum class Claim {
@@ -55,10 +59,11 @@ class ResultsStore {
   /// Takes a run for this program, unless it is done, failed or taken. `again`: one that failed is taken,
   /// too.
   Claim claim(const RunRequest& run, const std::string& version, bool again);
-  /// What came of a run that this program has claimed. Nothing happens if the claim was lost meanwhile.
-  void finish(const std::string& key, const std::string& summary,
+  /// What came of a run that this program has claimed. False, and nothing happens, if the claim was lost
+  /// meanwhile.
+  bool finish(const std::string& key, const std::string& summary,
               const std::map<std::string, double>& outputs, double wall_seconds);
-  void fail(const std::string& key, const std::string& message, double wall_seconds);
+  bool fail(const std::string& key, const std::string& message, double wall_seconds);
   /// Gives a claim back.
   void release(const std::string& key);
   /// Says that this program's claims are alive; to be called every minute or so.

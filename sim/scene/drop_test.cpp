@@ -1,6 +1,7 @@
 // One rock that falls on a floor: its rebound gives the local damping.
 #include <algorithm>
-#include <numbers>
+#include <cmath>
+#include <stdexcept>
 
 #include "sim/scene/ground.h"
 #include "sim/scene/stage.h"
@@ -23,14 +24,19 @@ RunOutcome run_drop_test(const Scenario& scenario, const DropTest& e, std::uint6
   stage.set_dump(1, 1);
   stage.add_load();
 
-  const auto look = [&] { return world.snapshot().grains.front(); };
   const double fall = std::sqrt(2 * e.height / world.settings().gravity.norm());
   bool bounced = false;
   double highest = 0;
-  while (world.time() < kMostTime * fall) {
+  while (true) {
+    if (world.time() > kMostTime * fall) throw std::runtime_error("the rock has not come to its rebound");
     if (!stage.advance(kLook, bounced ? "rebounding" : "falling", bounced ? 0.7 : 0.0, bounced ? 1.0 : 0.7))
       return stage.finish();
-    const Grain rock = look();
+    const Snapshot now = world.snapshot();
+    if (now.grains.empty())
+      throw std::runtime_error(
+          "the rock went through the floor: raise material.effective_modulus_pa or lower "
+          "experiment.height_m");
+    const Grain& rock = now.grains.front();
     const bool rises = rock.velocity.z() > 0;
     if (bounced && !rises) break;
     bounced = bounced || rises;

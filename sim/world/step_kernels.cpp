@@ -2,17 +2,18 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 namespace scree {
 namespace {
 
-constexpr int kFull = 64;  // pairs that are worth a start
-constexpr std::size_t kAhead = 8;
-constexpr std::size_t kTake = 64;  // entries of a row that are taken at a time
+constexpr int kFull = 64;          // a queue this long is worked off
+constexpr std::size_t kTake = 64;  // entries of a row that are taken between looks at the queues
+constexpr std::size_t kAhead = 8;  // spheres whose rows are fetched ahead
 
 // Pairs on their way. An entry stands in the row of its owner, or in that of its partner if only this one is
 // awake.
-template <int kRoom>
+template <std::size_t kRoom>
 struct Queue {
   int count = 0;
   int row[kRoom];
@@ -24,7 +25,9 @@ struct Queue {
     for (int k = count; k % kLanes != 0; ++k) put(k, row[count - 1], *entry[count - 1]);
   }
 };
-struct Queues {
+// Before a piece of a row is taken both hold fewer than kFull; what was open joins the closed ones when the
+// queues are worked off. Vectorised functions want the alignment.
+struct alignas(32) Queues {
   Queue<kFull + kTake + kLanes> open;          // did not touch in the last step
   Queue<2 * (kFull + kTake) + kLanes> closed;  // touch
   Lanes overlap_ratio{};
@@ -101,31 +104,33 @@ struct FourContacts {
   int first[kLanes], second[kLanes];  // its owner and the other
 };
 
-// Velocity and spin of the second of each pair against the first, with the sum of both spins.
-SCREE_INLINE LaneVector<TwinFloats> against(const Spheres& s, const FourContacts& four,
-                                            LaneVector<LaneFloats>& spins) {
-  TwinFloats motion[kLanes];
-  LaneFloats sum[kLanes];
+// Spins of the first and the second of each pair, and velocity and spin of the second against the first.
+struct Motions {
+  LaneVector<LaneFloats> spin1, spin2;
+  LaneVector<TwinFloats> relative;
+};
+SCREE_INLINE Motions motions_of(const Spheres& s, const FourContacts& four) {
+  TwinFloats relative[kLanes], spins[kLanes];
   for (int k = 0; k < kLanes; ++k) {
     const int i = four.first[k], j = four.second[k];
     const Lanes w1 = load(s.spin[i]), w2 = load(s.spin[j]);
-    motion[k] = twin(narrow(load(s.velocity[j]) - load(s.velocity[i])), narrow(w2 - w1));
-    sum[k] = narrow(w1 + w2);
+    relative[k] = twin(narrow(load(s.velocity[j]) - load(s.velocity[i])), narrow(w2 - w1));
+    spins[k] = twin(narrow(w1), narrow(w2));
   }
-  transpose(motion[0], motion[1], motion[2], motion[3]);
-  transpose(sum[0], sum[1], sum[2], sum[3]);
-  spins = {sum[0], sum[1], sum[2]};
-  return {motion[0], motion[1], motion[2]};
+  transpose(relative[0], relative[1], relative[2], relative[3]);
+  transpose(spins[0], spins[1], spins[2], spins[3]);
+  return {{first_half(spins[0]), first_half(spins[1]), first_half(spins[2])},
+          {second_half(spins[0]), second_half(spins[1]), second_half(spins[2])},
+          {relative[0], relative[1], relative[2]}};
 }
 
 // The law for four contacts, of which the first `count` are there.
 SCREE_INLINE void compute(const StepView& view, BlockWork& work, const FourContacts& four, int count,
                           Lanes& overlap_ratio) {
   const Spheres& s = view.spheres;
-  const int *first_of = four.first, *second_of = four.second;
   const Lanes zero{}, one = zero + 1.0;
   Lanes r1, r2;
-  const LaneVec3 x1 = load4(s.place.data(), first_of, r1), x2 = load4(s.place.data(), second_of, r2);
+  const LaneVec3 x1 = load4(s.place.data(), four.first, r1), x2 = load4(s.place.data(), four.second, r2);
   const LaneVec3 apart = x2 - x1;
   const Lanes distance = root(apart.squaredNorm()), per_distance = one / distance;
   const LaneMask distinct = distance > zero;
@@ -139,23 +144,20 @@ SCREE_INLINE void compute(const StepView& view, BlockWork& work, const FourConta
   // The contact point halves the overlap. It may lie beyond the centre of a small sphere pressed into a
   // block: the arms always add up to the distance, so angular momentum is kept.
   const Lanes arm1 = r1 - 0.5 * motion.overlap, arm2 = r2 - 0.5 * motion.overlap;
-  LaneVector<LaneFloats> spins;
-  LaneVector<TwinFloats> apart_at = against(s, four, spins);
-  const LaneVector<LaneFloats> n = narrow(motion.normal),
-                               spin = {second(apart_at.x_), second(apart_at.y_), second(apart_at.z_)};
-  // arm1 w1 + arm2 w2 of the sum and the difference of the spins
-  const LaneVector<LaneFloats> rim =
-      (spins * narrow(0.5 * distance) + spin * narrow(0.5 * (r2 - r1))).cross(n);
+  const Motions m = motions_of(s, four);
+  const LaneVector<LaneFloats> n = narrow(motion.normal);
+  const LaneVector<LaneFloats> rim = (m.spin1 * narrow(arm1) + m.spin2 * narrow(arm2)).cross(n);
   const LaneFloats nothing{};
-  motion.velocity_and_spin =
-      apart_at - LaneVector<TwinFloats>{twin(rim.x_, nothing), twin(rim.y_, nothing), twin(rim.z_, nothing)};
-  motion.twist = spins.dot(n) * 0.5f;
+  motion.rounded_normal = n;
+  motion.velocity_and_spin = m.relative - LaneVector<TwinFloats>{twin(rim.x_, nothing), twin(rim.y_, nothing),
+                                                                 twin(rim.z_, nothing)};
+  motion.twist = (m.spin1 + m.spin2).dot(n) * 0.5f;
   motion.dt = view.last_dt;
   if (view.law.beta_n > 0 || view.law.beta_s > 0) {
     Lanes m1, m2;
     for (int k = 0; k < kLanes; ++k) {
-      m1[k] = s.velocity[first_of[k]].w;
-      m2[k] = second_of[k] < s.movable ? s.velocity[second_of[k]].w : 1e300;
+      m1[k] = s.velocity[four.first[k]].w;
+      m2[k] = four.second[k] < s.movable ? s.velocity[four.second[k]].w : 1e300;
     }
     motion.reduced_mass = m1 / (one + m1 / m2);
   } else {
@@ -164,37 +166,38 @@ SCREE_INLINE void compute(const StepView& view, BlockWork& work, const FourConta
 
   ContactMemory* const memories = view.pairs.memories();
   ContactMemory* memory[kLanes];
-  TwinFloats m[kLanes];
-  for (int k = 0; k < kLanes; ++k) m[k] = load(*(memory[k] = memories + four.entry[k]->memory()));
-  transpose(m[0], m[1], m[2], m[3]);
-  LaneContactHistory history = {m[0], m[1], m[2]};
+  TwinFloats held[kLanes];
+  for (int k = 0; k < kLanes; ++k) held[k] = load(*(memory[k] = memories + four.entry[k]->memory()));
+  transpose(held[0], held[1], held[2], held[3]);
+  LaneContactHistory history = {held[0], held[1], held[2]};
   const BasicContactForce<Lanes> f =
       contact_step(view.law, ball_ball<Lanes>(view.law, r1, r2), motion, history);
-  m[0] = history.x_, m[1] = history.y_, m[2] = history.z_, m[3] = TwinFloats{};
-  transpose(m[0], m[1], m[2], m[3]);
-  for (int k = 0; k < kLanes; ++k) store(*memory[k], m[k]);
+  held[0] = history.x_, held[1] = history.y_, held[2] = history.z_, held[3] = TwinFloats{};
+  transpose(held[0], held[1], held[2], held[3]);
+  for (int k = 0; k < kLanes; ++k) store(*memory[k], held[k]);
   overlap_ratio = larger(overlap_ratio, motion.overlap / smaller(r1, r2));
 
-  const LaneVec3 lever = motion.normal.cross(f.force), turn1 = lever * arm1 + f.rolling,
-                 turn2 = lever * arm2 - f.rolling;
+  const LaneVec3 lever = motion.normal.cross(f.force), moment1 = lever * arm1 + f.rolling,
+                 moment2 = lever * arm2 - f.rolling;
   Lanes force[] = {f.force.x_, f.force.y_, f.force.z_, one};  // their companion counts contacts
-  Lanes torque1[] = {turn1.x_, turn1.y_, turn1.z_, zero}, torque2[] = {turn2.x_, turn2.y_, turn2.z_, zero};
+  Lanes torque1[] = {moment1.x_, moment1.y_, moment1.z_, zero},
+        torque2[] = {moment2.x_, moment2.y_, moment2.z_, zero};
   transpose(force[0], force[1], force[2], force[3]);
   transpose(torque1[0], torque1[1], torque1[2], torque1[3]);
   transpose(torque2[0], torque2[1], torque2[2], torque2[3]);
   if (opened == 0 && count == kLanes) {  // nearly always; without a branch each
 #pragma GCC unroll 4
     for (int k = 0; k < kLanes; ++k)
-      add_force(view, work, first_of[k], second_of[k], *four.entry[k], force[k], torque1[k], torque2[k]);
+      add_force(view, work, four.first[k], four.second[k], *four.entry[k], force[k], torque1[k], torque2[k]);
     return;
   }
 #pragma GCC unroll 1
   for (int k = 0; k < count; ++k) {
     Neighbour& entry = *four.entry[k];
     if ((opened >> k & 1u) == 0)
-      add_force(view, work, first_of[k], second_of[k], entry, force[k], torque1[k], torque2[k]);
+      add_force(view, work, four.first[k], four.second[k], entry, force[k], torque1[k], torque2[k]);
     else
-      close_or_open(view, work, entry.sphere == first_of[k] ? second_of[k] : first_of[k], entry);
+      close_or_open(view, work, entry.sphere == four.first[k] ? four.second[k] : four.first[k], entry);
   }
 }
 
@@ -225,6 +228,7 @@ SCREE_VECTORISED
 void work_off(const StepView& view, BlockWork& work, Queues& queues, bool last) {
   sieve(view, work, queues);
   auto& closed = queues.closed;
+  assert(closed.count <= static_cast<int>(2 * (kFull + kTake)));
   if (last) closed.pad();
   int k = 0;
   for (; k < closed.count; k += kLanes) {
@@ -268,19 +272,17 @@ void contact_forces(const StepView& view, BlockWork& work) {
   auto& closed = queues.closed;
   work.far_blocks = 0;
   work.disturbed.clear();
-  const auto take = [&](int row, std::span<Neighbour> entries, const auto& wanted) {
-    for (std::size_t first = 0; first < entries.size(); first += kTake) {
-      for (Neighbour& entry : entries.subspan(first, std::min(kTake, entries.size() - first))) {
-        // Both queues get it, and one keeps it, or none: no branch to guess wrong.
-        const int wants = wanted(entry) ? 1 : 0, touching = entry.touching() ? wants : 0;
-        closed.put(closed.count, row, entry);
-        open.put(open.count, row, entry);
-        closed.count += touching;
-        open.count += wants - touching;
-        __builtin_prefetch(view.pairs.memories() + entry.memory(), 1);
-      }
-      if (closed.count >= kFull || open.count >= kFull) work_off(view, work, queues, false);
-    }
+  const auto put = [&](int row, Neighbour& entry) {
+    // Both queues get it, and one keeps it: no branch to guess wrong.
+    const int touching = entry.touching() ? 1 : 0;
+    closed.put(closed.count, row, entry);
+    open.put(open.count, row, entry);
+    closed.count += touching;
+    open.count += 1 - touching;
+    __builtin_prefetch(view.pairs.memories() + entry.memory(), 1);
+  };
+  const auto work_off_if_full = [&] {
+    if (closed.count >= kFull || open.count >= kFull) work_off(view, work, queues, false);
   };
   for (const int i : work.awake) view.sum[i] = {};
   const bool sleepers = view.sleep.asleep() > 0;
@@ -288,9 +290,17 @@ void contact_forces(const StepView& view, BlockWork& work) {
     const int i = work.awake[n];
     if (n + kAhead < work.awake.size())
       __builtin_prefetch(view.pairs.neighbours(work.awake[n + kAhead]).data());
-    take(i, view.pairs.owned(i), [](const Neighbour&) { return true; });
-    if (sleepers)
-      take(i, view.pairs.below(i), [&](const Neighbour& other) { return s.asleep[other.sphere] != 0; });
+    const std::span<Neighbour> owned = view.pairs.owned(i);
+    for (std::size_t first = 0; first < owned.size(); first += kTake) {
+      for (Neighbour& entry : owned.subspan(first, std::min(kTake, owned.size() - first))) put(i, entry);
+      work_off_if_full();
+    }
+    if (!sleepers) continue;
+    for (Neighbour& entry : view.pairs.below(i)) {
+      if (!s.asleep[entry.sphere]) continue;  // the entry may be turned by its owner's thread just now
+      put(i, entry);
+      work_off_if_full();
+    }
   }
   work_off(view, work, queues, true);
   for (int k = 0; k < kLanes; ++k) work.overlap_ratio = std::max(work.overlap_ratio, queues.overlap_ratio[k]);

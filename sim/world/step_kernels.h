@@ -4,9 +4,10 @@
 // Spheres are handled in blocks of kBlock neighbours in memory (and so in space). A block goes through the
 // contacts that its awake spheres own, and those that they have with sleeping owners, row by row. Some sixty
 // at a time are computed in groups of four (lanes.h); forces and moments are added one contact after another
-// in the order in which they were collected. What acts on a sphere is the sum of
-//   far:  contacts owned by spheres of earlier blocks, by rising owner, and
-//   near: contacts of its own block, by rising owner, then with meshes.
+// in the order in which they were collected, which does not depend on threads. What acts on a sphere is the
+// sum of
+//   far:  contacts owned by spheres of earlier blocks, and
+//   near: contacts of its own block, then with meshes.
 // One thread adds far forces as it goes; several write them down block by block and add them afterwards.
 // Order and grouping are the same, so the sums are too, bit by bit.
 #include <span>
@@ -51,7 +52,8 @@ struct BlockWork {
       inbox;  ///< what earlier blocks wrote down for this one, in the order of adding
 };
 
-/// Gives each block with awake spheres (rising) its share of them.
+/// Makes `blocks` one for each block that has awake spheres, rising, each with its share of them; nobody is
+/// near its rim yet.
 void split_into_blocks(std::span<const int> awake, std::vector<BlockWork>& blocks);
 
 struct StepView {

@@ -121,15 +121,29 @@ TEST(Posterior, AsksWhereItMatters) {
   EXPECT_GT(std::abs(next[1][0] - next[0][0]), 0.05);
 }
 
-TEST(Calibration, LevelLinesAreLinearInBetween) {
-  const std::vector<double> x{0, 1, 2}, y{0, 2};
-  // z = 3 x + 2 y
-  const std::vector<std::vector<double>> z{{0, 3, 6}, {4, 7, 10}};
-  const std::vector<double> line = level_line(x, y, z, 4.0);
-  EXPECT_NEAR(line[0], 2.0, 1e-12);
-  EXPECT_NEAR(line[1], 0.5, 1e-12);
-  EXPECT_TRUE(std::isnan(line[2]));
-  EXPECT_NEAR(crossing(x, z[0], 4.5), 1.5, 1e-12);
+TEST(Calibration, LevelsAreFoundAlongBothAxes) {
+  // z = 3 x + 2 y; the level 4 runs from (0, 2) to (4/3, 0).
+  ParameterMap map{{0, 1, 2}, {0, 2}, {{0, 3, 6}, {4, 7, 10}}};
+  EXPECT_NEAR(map.at(0.5, 1.5), 4.5, 1e-12);
+  const auto pairs = level_pairs(map, 4.0);
+  ASSERT_GT(pairs.size(), 100u);
+  for (const auto& [x, y] : pairs) EXPECT_NEAR(3 * x + 2 * y, 4, 1e-9);
+  EXPECT_NEAR(pairs.front()[0], 0, 1e-12);
+  EXPECT_NEAR(pairs.back()[0], 4.0 / 3, 0.02);
+  EXPECT_NEAR(level_where_equal(map, 4.0), 0.8, 1e-9);
+  EXPECT_TRUE(std::isnan(level_where_equal(map, 40.0)));
+  EXPECT_NEAR(crossing(map.x, map.value[0], 4.5), 1.5, 1e-12);
+  // A level within one cell, off every node's column: table B.2 has 25.4 between mu = 0.1 and 0.3 only.
+  map.value = {{10, 20, 30}, {10, 20, 30}};
+  EXPECT_FALSE(level_pairs(map, 25.4).empty());
+}
+
+TEST(Posterior, KnowsWhenItsRangeCutsItOff) {
+  const Data data = line(30, 1, 0.0, 1);
+  const Emulator emulator(data.x, data.y);
+  EXPECT_FALSE(Posterior({{angle(0.4), 0.5, &emulator}}, 1).cut_off(0));
+  EXPECT_TRUE(Posterior({{angle(0.0) - 3, 0.5, &emulator}}, 1).cut_off(0));
+  EXPECT_TRUE(Posterior({{angle(0.5), 500, &emulator}}, 1).cut_off(0));
 }
 
 }  // namespace

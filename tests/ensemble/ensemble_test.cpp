@@ -52,7 +52,7 @@ END
 
 TEST_F(Runs, AllComeIntoTheStoreOnce) {
   ResultsStore store(folder / "store.sqlite");
-  LocalProcesses processes(program("sleep 0.1"), 3);
+  LocalProcesses processes(3, program("sleep 0.1"));
   requests.push_back(requests.front());  // stands in the sweep twice
   const EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
   EXPECT_EQ(end.runs, 6u);
@@ -74,9 +74,9 @@ TEST_F(Runs, AllComeIntoTheStoreOnce) {
 
 TEST_F(Runs, OneThatFailsDoesNotStopTheRest) {
   ResultsStore store(folder / "store.sqlite");
-  LocalProcesses processes(program("echo ' 12 %  about 3 s left'; case $n in 2) echo 'seed 1: it blew up'; "
-                                   "exit 1;; 3) kill -9 $$;; 4) exit 0;; esac"),
-                           2);
+  LocalProcesses processes(2,
+                           program("echo ' 12 %  about 3 s left'; case $n in 2) echo 'seed 1: it blew up'; "
+                                   "exit 1;; 3) kill -9 $$;; 4) exit 0;; esac"));
   EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
   EXPECT_EQ(end.done, 3u);
   EXPECT_EQ(end.failed, 3u);
@@ -85,7 +85,7 @@ TEST_F(Runs, OneThatFailsDoesNotStopTheRest) {
   EXPECT_NE(store.find("key4")->message.find("not a summary"), std::string::npos);
   end = run_ensemble(requests, store, processes, {"1", false}, go_on);
   EXPECT_EQ(end.ended_here, 0u);
-  LocalProcesses mended(program(""), 2);
+  LocalProcesses mended(2, program(""));
   end = run_ensemble(requests, store, mended, {"1", true}, go_on);
   EXPECT_EQ(end.ended_here, 3u);
   EXPECT_EQ(end.done, 6u);
@@ -93,7 +93,7 @@ TEST_F(Runs, OneThatFailsDoesNotStopTheRest) {
 
 TEST_F(Runs, InterruptedOnesAreGivenBackAndEnd) {
   ResultsStore store(folder / "store.sqlite");
-  LocalProcesses processes(program("echo $$ > \"$4.pid\"; exec sleep 100"), 2);
+  LocalProcesses processes(2, program("exec sleep 100"));
   const auto start = std::chrono::steady_clock::now();
   const EnsembleProgress end =
       run_ensemble(requests, store, processes, {"1", false}, [&](const EnsembleProgress&) {

@@ -88,7 +88,7 @@ TEST_F(SweepFile, WrongOnesAreToldWithTheirPlace) {
   EXPECT_THAT(first_error("design: {type: grid, parameters: {material.mu: 0.2}}\n"),
               HasSubstr("a list of values is expected"));
   EXPECT_THAT(first_error("design: {type: grid, parameters: {material.nu: [0.2]}}\n"),
-              HasSubstr("material.nu"));
+              HasSubstr("a point is no scenario: --set material.nu=0.2"));
   EXPECT_THAT(first_error("design: {type: grid, parameters: {material.mu: [-1]}}\n"),
               HasSubstr("out of range"));
   EXPECT_THAT(first_error("design: {type: list, points: [{material.mu: 0.2}, {material.mu_r: 0.2}]}\n"),

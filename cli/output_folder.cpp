@@ -1,0 +1,26 @@
+#include "cli/output_folder.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace fs = std::filesystem;
+
+fs::path free_run_folder(const std::string& name) {
+  fs::path folder = fs::path("runs") / name;
+  for (int k = 2; fs::exists(folder); ++k) folder = fs::path("runs") / fmt::format("{}-{}", name, k);
+  return folder;
+}
+
+bool prepare_folder(const fs::path& folder, bool force) {
+  if (!force && fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder))) {
+    fmt::print(stderr, "{}: is there already; choose another --out, or --force to write into it\n",
+               folder.string());
+    return false;
+  }
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!error && access(folder.c_str(), W_OK) == 0) return true;
+  fmt::print(stderr, "{}: cannot be written: {}; choose another --out\n", folder.string(),
+             error ? error.message() : "no permission");
+  return false;
+}

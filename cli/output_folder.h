@@ -1,0 +1,10 @@
+#pragma once
+// The folder a command writes into.
+#include <filesystem>
+#include <string>
+
+/// runs/NAME, or the first of runs/NAME-2, ... that is not there.
+std::filesystem::path free_run_folder(const std::string& name);
+
+/// Makes the folder. False, with a message, if it holds something (unless forced) or cannot be written.
+bool prepare_folder(const std::filesystem::path& folder, bool force);
