@@ -273,7 +273,7 @@ int run_calibrate(const CalibrateOptions& options) {
 
   scree::CalibrationResult result;
   try {
-    result = scree::calibrate(spec, simulator(spec, *store, options), side_by_side(options.jobs));
+    result = scree::calibrate(spec, simulator(spec, *store, options));
   } catch (const scree::CalibrationStopped& stopped) {
     fmt::print(stderr, "{}\n", stopped.what());
     return kInterrupted;

@@ -34,13 +34,10 @@ std::unique_ptr<scree::ResultsStore> open_store(const fs::path& named, bool must
   }
 }
 
-int side_by_side(int jobs) {
-  return jobs > 0 ? jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-}
-
 scree::EnsembleProgress run_with_progress(const std::vector<scree::RunRequest>& runs,
                                           scree::ResultsStore& store, int jobs, bool again) {
-  scree::LocalProcesses processes(side_by_side(jobs));
+  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  scree::LocalProcesses processes(jobs > 0 ? jobs : cores);
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const auto start = std::chrono::steady_clock::now();
   double shown = -1e9;

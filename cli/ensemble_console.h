@@ -17,8 +17,5 @@ std::unique_ptr<scree::ResultsStore> open_store(const std::filesystem::path& nam
 scree::EnsembleProgress run_with_progress(const std::vector<scree::RunRequest>& runs,
                                           scree::ResultsStore& store, int jobs, bool again);
 
-/// Runs side by side that `jobs` stands for.
-int side_by_side(int jobs);
-
 /// A decimal number and nothing else.
 std::optional<double> number_of(const std::string& text);

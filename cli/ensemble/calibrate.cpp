@@ -13,8 +13,7 @@ namespace {
 
 class Calibrator {
  public:
-  Calibrator(const CalibrationSpec& spec, const Simulator& simulate, int side_by_side)
-      : spec_(spec), simulate_(simulate), side_by_side_(side_by_side) {
+  Calibrator(const CalibrationSpec& spec, const Simulator& simulate) : spec_(spec), simulate_(simulate) {
     for (const auto& target : spec.targets) scenarios_.insert(target.scenario);
   }
 
@@ -107,7 +106,7 @@ class Calibrator {
            result_.posterior->excess_uncertainty() > spec_.enough) {
       points.clear();
       for (const Eigen::VectorXd& at : result_.posterior->next_points(
-               std::min(side_by_side_, spec_.most_simulations - static_cast<int>(used))))
+               std::min(spec_.together, spec_.most_simulations - static_cast<int>(used))))
         points.push_back({at, next_seed()});
       add(points);
       learn();
@@ -116,7 +115,6 @@ class Calibrator {
 
   const CalibrationSpec& spec_;
   const Simulator& simulate_;
-  int side_by_side_;
   std::set<std::filesystem::path> scenarios_;
   CalibrationResult result_;
 };
@@ -198,8 +196,8 @@ double parameter_value(const CalibrationSpec& spec, int parameter, double share)
   return span.from + share * (span.to - span.from);
 }
 
-CalibrationResult calibrate(const CalibrationSpec& spec, const Simulator& simulate, int side_by_side) {
-  return Calibrator(spec, simulate, side_by_side).run();
+CalibrationResult calibrate(const CalibrationSpec& spec, const Simulator& simulate) {
+  return Calibrator(spec, simulate).run();
 }
 
 }  // namespace scree

@@ -58,8 +58,8 @@ CalibrationAnswer answer_of(const CalibrationSpec& spec, const CalibrationResult
 /// A value of a parameter from its share of the way between its ends, and as text for a scenario.
 double parameter_value(const CalibrationSpec& spec, int parameter, double share);
 
-/// Runs the calibration. `bayes`: a Sobol design first, a new seed at each point; then, as many at a time as
-/// there are `side_by_side`, where the posterior says that it helps most.
-CalibrationResult calibrate(const CalibrationSpec& spec, const Simulator& simulate, int side_by_side);
+/// Runs the calibration. `bayes`: a Sobol design first, a new seed at each point; then, some at a time, where
+/// the posterior says that it helps most.
+CalibrationResult calibrate(const CalibrationSpec& spec, const Simulator& simulate);
 
 }  // namespace scree

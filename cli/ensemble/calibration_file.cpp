@@ -62,9 +62,10 @@ void read_method(const YamlNode& root, CalibrationSpec& spec, FileReader& reader
     reader.allow(*method, {"type", "points"}, " in method grid");
     integer("points", spec.grid_points, 2, 50);
   } else if (name == "bayes") {
-    reader.allow(*method, {"type", "first", "most", "enough"}, " in method bayes");
+    reader.allow(*method, {"type", "first", "most", "together", "enough"}, " in method bayes");
     integer("first", spec.first_points, static_cast<int>(Emulator::kLeastPoints), 500);
     integer("most", spec.most_simulations, 4, static_cast<int>(Emulator::kMostPoints));
+    integer("together", spec.together, 1, 100);
     if (const YamlEntry* entry = method->find("enough"))
       spec.enough = reader.number(entry->value, "enough").value_or(spec.enough);
     if (spec.most_simulations < spec.first_points)

@@ -1,0 +1,41 @@
+// Whether this program still gives the numbers that stores remember.
+#define XXH_INLINE_ALL
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <xxhash.h>
+
+#include "cli/ensemble/run_request.h"
+#include "scree_version.h"
+#include "sim/scene/run.h"
+
+namespace scree {
+namespace {
+
+// Hash of where every grain of a small bucket and of a small dump ends, to the last bit. When it changes, and
+// is meant to, raise kResultsRevision, so that nobody's store answers with numbers of the older program, and
+// put both here.
+TEST(ResultsRevision, IsRaisedWhenNumbersChange) {
+  const std::string source = SCREE_SOURCE_DIR;
+  struct Small {
+    const char* file;
+    std::vector<std::string> overrides;
+  };
+  std::string text;
+  for (const Small& small :
+       {Small{"repose_lab.yaml", {"experiment.mass_kg=2"}},
+        Small{"quick_dump.yaml",
+              {"experiment.payload_t=5", "experiment.bench.height_m=3", "experiment.bench.width_m=30",
+               "experiment.bench.top_length_m=10", "experiment.bench.floor_length_m=15"}}}) {
+    ScenarioResult loaded =
+        load_scenario(source + "/scenarios/" + small.file, small.overrides, source + "/assets");
+    ASSERT_TRUE(loaded.errors.empty()) << loaded.errors.front().text();
+    for (const Grain& grain : run_scenario(loaded.scenario, 10001, 1, {}).final_state.grains)
+      text +=
+          fmt::format("{} {} {} {}\n", grain.id, grain.position.x(), grain.position.y(), grain.position.z());
+  }
+  EXPECT_EQ(kResultsRevision, 1);
+  EXPECT_EQ(fmt::format("{:016x}", XXH3_64bits(text.data(), text.size())), "1e3aadd9ab7dfdb5");
+}
+
+}  // namespace
+}  // namespace scree
