@@ -73,6 +73,7 @@ double section_quantity(const SectionTable& table, int index, const std::string&
 double simulated_value(const SeedResult& seed, const ReferenceValue& reference) {
   if (reference.section == "whole") {
     if (reference.quantity == "angle") return seed.repose ? seed.repose->angle : nan;
+    if (reference.quantity == "rebound_height") return seed.rebound_height.value_or(nan);
     if (reference.quantity == "slope_angle") return seed.slope_angle.value_or(nan);
     if (reference.quantity == "share_above_1m_orig" && !seed.sections.empty())
       return 1 - passing_1m(seed.sections.front(), seed.sections.front().original_passing);

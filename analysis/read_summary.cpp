@@ -75,6 +75,9 @@ StoredRun read_summary(const std::filesystem::path& file) {
         run.seeds[k].repose = angle;
       }
     }
+    if (json.contains("rebound_height_m"))
+      for (std::size_t k = 0; k < run.seeds.size(); ++k)
+        run.seeds[k].rebound_height = json.at("rebound_height_m").at("per_seed").at(k).get<double>();
     for (const Json& row : json.at("comparison")) {
       const auto name = row.at("case").get<std::string>();
       if (std::find(run.cases.begin(), run.cases.end(), name) == run.cases.end()) run.cases.push_back(name);

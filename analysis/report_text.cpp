@@ -54,12 +54,15 @@ std::string with_std(const MeanStd& both, int decimals) {
 }
 
 std::string angle_sentences(const RunResult& result) {
-  std::vector<double> repose, slope;
+  std::vector<double> rebound, repose, slope;
   for (const SeedResult& seed : result.seeds) {
+    if (seed.rebound_height) rebound.push_back(*seed.rebound_height);
     if (seed.repose) repose.push_back(seed.repose->angle);
     if (seed.slope_angle) slope.push_back(*seed.slope_angle);
   }
   std::string out;
+  if (!rebound.empty())
+    out += fmt::format("<strong>The rock rebounds to {} m.</strong> ", with_std(mean_std(rebound), 3));
   if (!repose.empty())
     out += fmt::format("<strong>The heap stands at a repose angle of {}°.</strong> ",
                        with_std(mean_std(repose), 1));

@@ -107,6 +107,8 @@ def repose(tables, out):
     def line(name, quantity):
         return 'line ' + setups[name, quantity]['source_line']
 
+    out.add('drop_test', 'rebound_height', 'whole', 'measured', setup('drop_test', 'rebound_height_mean'), None, 'm',
+            'approx', line('drop_test', 'rebound_height_mean'))
     out.add('lab_repose_0.2_0.2', 'angle', 'whole', 'measured', setup('lab_repose_result', 'angle_measured_mean'),
             setup('lab_repose_result', 'angle_measured_std'), 'deg', 'eq', 'B.1')
     for r in rows(tables, 'field_repose_pfc3d_summary.csv'):
