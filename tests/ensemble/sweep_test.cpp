@@ -7,6 +7,7 @@
 
 #include <fstream>
 
+#include "cli/ensemble/calibration_file.h"
 #include "cli/ensemble/run_request.h"
 #include "scree_version.h"
 
@@ -105,6 +106,21 @@ TEST_F(SweepFile, WrongOnesAreToldWithTheirPlace) {
   EXPECT_THAT(first_error("seeds: [3, 3]\ndesign: {type: grid, parameters: {material.mu: [0.2]}}\n"),
               HasSubstr("stands twice"));
   EXPECT_THAT(load_sweep(folder / "missing.yaml", kAssets).errors.front().text(), HasSubstr("no such file"));
+}
+
+TEST(EnsembleFiles, ThoseOfTheProjectLoad) {
+  int files = 0;
+  for (const auto& item : fs::directory_iterator(fs::path(SCREE_SOURCE_DIR) / "scenarios" / "sweeps")) {
+    const SweepResult r = load_sweep(item.path(), kAssets);
+    EXPECT_TRUE(r.errors.empty()) << r.errors.front().text();
+    ++files;
+  }
+  for (const auto& item : fs::directory_iterator(fs::path(SCREE_SOURCE_DIR) / "scenarios" / "calibrations")) {
+    const CalibrationSpecResult r = load_calibration(item.path());
+    EXPECT_TRUE(r.errors.empty()) << r.errors.front().text();
+    ++files;
+  }
+  EXPECT_GE(files, 4);
 }
 
 TEST_F(SweepFile, KeyIsThatOfTheNumbersAlone) {
