@@ -180,11 +180,12 @@ std::string bench_lines(const RunResult& result, const SceneFacts& scene, const 
          line(toe, 0, frame.right, 0, look);
 }
 
-/// The straight flanks that the reading of the repose angle stands for.
+/// The straight flanks whose slope is the repose angle.
 std::string cone_lines(const ReposeAngle& repose, double centre) {
   const char* look = "front lw 1.5 dt 2 lc rgb '#d55e00'";
-  return line(centre - repose.radius, 0, centre, repose.height, look) +
-         line(centre, repose.height, centre + repose.radius, 0, look);
+  const double top = repose.flank_height, foot = top / std::tan(repose.angle * std::numbers::pi / 180);
+  if (!std::isfinite(foot)) return "";
+  return line(centre - foot, 0, centre, top, look) + line(centre, top, centre + foot, 0, look);
 }
 
 View cut_view(const RunResult& result, const SceneFacts& scene, const SeedResult& seed, double largest) {

@@ -71,7 +71,7 @@ StoredRun read_summary(const std::filesystem::path& file) {
         ReposeAngle angle;
         angle.angle = number(repose.at("angle_deg").at("per_seed").at(k));
         angle.half_coverage = number(repose.at("half_coverage_deg").at("per_seed").at(k));
-        angle.slope_fit = number(repose.at("slope_fit_deg").at("per_seed").at(k));
+        angle.height_over_radius = number(repose.at("height_over_radius_deg").at("per_seed").at(k));
         run.seeds[k].repose = angle;
       }
     }

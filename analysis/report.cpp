@@ -257,7 +257,7 @@ finer than dumped. It compares the mean logarithm of the diameters.</dd>
 <dt>D10, D50, D80, D90</dt><dd>Diameter below which 10, 50, 80 or 90 % of the mass lies. D50 is the median.</dd>
 <dt>section</dt><dd>A slice of the slope between two heights; S1 lies at the crest, the last one at the toe.</dd>
 <dt>x/L</dt><dd>Place along the slope: 0 at the crest, 1 at the toe.</dd>
-<dt>repose angle</dt><dd>Angle of the flank of a heap at rest, from its height and radius.</dd>
+<dt>repose angle</dt><dd>Slope of the flank of a heap at rest, between 20 and 80 % of its height.</dd>
 <dt>seed</dt><dd>A run with the same rock and scene but other random numbers; the spread of seeds is the scatter of the
 result.</dd>
 </dl>

@@ -295,9 +295,9 @@ Picture repose_chart(const RunResult& result, const std::filesystem::path& folde
     const MeanStd both = mean_std(values);
     rows.push_back({label, {both.mean, 0, both.n > 1 ? both.std : 0}, "#0072b2"});
   };
-  reading("this run: height over radius", &ReposeAngle::angle);
-  reading("this run: half-covered radius", &ReposeAngle::half_coverage);
-  reading("this run: fit to the flank", &ReposeAngle::slope_fit);
+  reading("this run: slope of the flank", &ReposeAngle::angle);
+  reading("this run: height over radius", &ReposeAngle::height_over_radius);
+  reading("this run: height over half-covered radius", &ReposeAngle::half_coverage);
   for (const Comparison& row : result.comparison) {
     const ReferenceValue& reference = row.reference;
     if (reference.quantity != "angle") continue;

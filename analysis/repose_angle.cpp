@@ -1,13 +1,12 @@
 // Readings of the repose angle.
 //
-// The thesis reads atan(H / R): H the top of the cone, R the mean over four directions of the distance from
-// the centre to where particles no longer overlap, runaways left out. Here: seen from above, a ray from the
-// axis in each direction leaves the heap at the first gap between grains. Of the readings tried (a ray; a
-// strip of one mean or one largest diameter, in which a row of touching grains counts), the ray is the
-// literal one, and it is nearest to the printed angles at both friction values of the laboratory test; a
-// strip as wide as the largest grain follows single grains out of the heap and reads 3 to 7 degrees less.
+// The angle is the slope of the heap's surface, seen from above and averaged over all directions, between 20
+// and 80 % of its height: a straight line is fitted there. It needs no decision where a heap ends.
 //
-// The other readings come from a height map of the heap seen from above.
+// The thesis describes atan(H / R): H the top of the cone, R the mean over four directions of the distance
+// from the centre to where particles no longer overlap, runaways left out. Here: a ray from the axis in each
+// direction leaves the heap at the first gap between grains. (A strip as wide as the largest grain follows
+// single grains out of the heap and reads 3 to 7 degrees less.)
 #include "analysis/repose_angle.h"
 
 #include <algorithm>
@@ -149,8 +148,9 @@ double falls_below(const Rings& rings, const std::vector<double>& values, double
   return nan;
 }
 
-/// Slope (degrees) of the least-squares line through the rings between 80 % and 20 % of `height`.
-double fitted_slope(const Rings& rings, double height) {
+/// The least-squares line through the rings between 80 % and 20 % of `height`: its fall over its length, and
+/// its height at the axis.
+std::array<double, 2> fitted_flank(const Rings& rings, double height) {
   const double inner = falls_below(rings, rings.height, 0.8 * height);
   const double outer = falls_below(rings, rings.height, 0.2 * height);
   double n = 0, sx = 0, sz = 0, sxx = 0, sxz = 0;
@@ -163,15 +163,17 @@ double fitted_slope(const Rings& rings, double height) {
     sxx += x * x;
     sxz += x * z;
   }
-  if (n < 2) return nan;
-  return degrees(std::atan(-(n * sxz - sx * sz) / (n * sxx - sx * sx)));
+  if (n < 2) return {nan, nan};
+  const double rise = (n * sxz - sx * sz) / (n * sxx - sx * sx);
+  return {-rise, (sz - rise * sx) / n};
 }
 
 }  // namespace
 
 ReposeAngle measure_repose(const std::vector<Grain>& heap, double floor) {
   ReposeAngle result;
-  result.angle = result.half_coverage = result.slope_fit = result.height = result.radius = nan;
+  result.angle = result.height_over_radius = result.half_coverage = result.flank_height = nan;
+  result.height = result.radius = nan;
   if (heap.empty()) return result;
   const double x0 = weighted_median(heap, 0), y0 = weighted_median(heap, 1);
   std::vector<Circle> circles;
@@ -188,13 +190,15 @@ ReposeAngle measure_repose(const std::vector<Grain>& heap, double floor) {
     runaway ? void(++result.runaways) : inside.push_back(&heap[i]);
   }
   result.height = top_of(inside, floor);
-  result.angle = degrees(std::atan2(result.height, result.radius));
+  result.height_over_radius = degrees(std::atan2(result.height, result.radius));
 
   const double extent = 1.5 * *std::max_element(std::begin(result.radii), std::end(result.radii));
   if (!(extent > 0)) return result;
   const Rings rings = rings_of(heap, x0, y0, floor, extent);
   result.half_coverage = degrees(std::atan2(result.height, falls_below(rings, rings.covered, 0.5)));
-  result.slope_fit = fitted_slope(rings, result.height);
+  const auto [fall, at_axis] = fitted_flank(rings, result.height);
+  result.angle = degrees(std::atan(fall));
+  result.flank_height = at_axis;
   return result;
 }
 

@@ -36,7 +36,7 @@ const std::vector<std::string>& common_outputs() {
 
 std::vector<std::string> outputs_of(const std::string& experiment) {
   if (experiment == "repose_lift")
-    return {"angle_deg", "half_coverage_deg", "slope_fit_deg", "height_m", "radius_m", "runaways"};
+    return {"angle_deg", "height_over_radius_deg", "half_coverage_deg", "height_m", "radius_m", "runaways"};
   if (experiment == "drop_test") return {"rebound_height_m"};
   std::vector<std::string> names{"slope_angle_deg"};
   for (const SectionField& field : section_fields()) names.push_back(std::string(field.name) + "_S1");

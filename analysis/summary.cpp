@@ -111,8 +111,8 @@ Json repose(const RunResult& result) {
     }));
   };
   return {{"angle_deg", reading(&ReposeAngle::angle)},
+          {"height_over_radius_deg", reading(&ReposeAngle::height_over_radius)},
           {"half_coverage_deg", reading(&ReposeAngle::half_coverage)},
-          {"slope_fit_deg", reading(&ReposeAngle::slope_fit)},
           {"height_m", reading(&ReposeAngle::height)},
           {"radius_m", reading(&ReposeAngle::radius)},
           {"runaways", reading(&ReposeAngle::runaways)}};

@@ -1,6 +1,7 @@
 #pragma once
 // A number over one or two parameters: a line with deviations, or a contour map.
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -16,7 +17,8 @@ struct LineChart {
   std::string title, x_label, y_label;
   struct Point {
     double x;
-    MeanStd y;  ///< over seeds
+    MeanStd y;             ///< over seeds
+    double printed = NAN;  ///< drawn beside it
   };
   std::vector<Point> points;
 };
@@ -25,7 +27,8 @@ struct LineChart {
 struct ContourMap {
   std::string title, x_label, y_label, value_label;
   ParameterMap map;
-  std::optional<double> target;  ///< drawn as a thick line
+  std::optional<ParameterMap> beside;  ///< printed values on the same grid, drawn as a second map
+  std::optional<double> target;        ///< drawn as a thick line
 };
 
 /// What a calibration of one parameter found: simulations, the emulator's 90 % band, the target's.

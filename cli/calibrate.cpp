@@ -145,9 +145,9 @@ void draw_picture(const scree::CalibrationSpec& spec, const scree::CalibrationRe
                   const scree::CalibrationAnswer& answer, const fs::path& file) {
   const auto& target = spec.targets[0];
   if (answer.map) {
-    scree::draw(
-        {spec.name, spec.parameters[0].key, spec.parameters[1].key, target.output, *answer.map, target.value},
-        file);
+    scree::draw(scree::ContourMap{spec.name, spec.parameters[0].key, spec.parameters[1].key, target.output,
+                                  *answer.map, std::nullopt, target.value},
+                file);
     return;
   }
   if (spec.parameters.size() != 1) return;

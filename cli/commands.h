@@ -25,6 +25,7 @@ struct SweepOptions {
   bool again = false;           ///< try runs that failed before again
   bool list = false;            ///< show what is there, run nothing
   bool failed = false;          ///< show what failed, run nothing
+  std::filesystem::path from;   ///< take the runs from this exported table, not from a store; run nothing
   std::filesystem::path csv;    ///< export to this file
   std::filesystem::path plot;   ///< draw into this file (SVG)
   std::string output;           ///< what is shown and drawn; empty: the repose angle, or chi

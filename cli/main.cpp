@@ -80,6 +80,10 @@ int main(int argc, char** argv) {
   sweep_app->add_flag("--again", sweep.again, "Try runs that failed before again");
   sweep_app->add_flag("--list", sweep.list, "Show the points and what is known of them; run nothing");
   sweep_app->add_flag("--failed", sweep.failed, "Show the runs that failed and why; run nothing");
+  sweep_app
+      ->add_option("--from", sweep.from,
+                   "Show the runs of this exported table instead; run nothing, no store")
+      ->excludes("--store");
   sweep_app->add_option("--export", sweep.csv, "Write every run and its numbers to a CSV file");
   sweep_app->add_option("--plot", sweep.plot, "Draw the output over one or two parameters (.svg)");
   sweep_app->add_option("--output", sweep.output,
@@ -87,6 +91,7 @@ int main(int argc, char** argv) {
   sweep_app->footer(
       "\nExamples:\n  scree sweep scenarios/sweeps/repose_lab.yaml\n"
       "  scree sweep scenarios/sweeps/repose_lab.yaml --list --export angles.csv --plot angles.svg\n"
+      "  scree sweep scenarios/sweeps/repose_lab.yaml --from assets/sweeps/repose_lab.csv --plot angles.svg\n"
       "\nAn interrupted sweep goes on where it stopped when it is started again.\n");
 
   CalibrateOptions calibrate;

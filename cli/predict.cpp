@@ -9,7 +9,7 @@
 #include "analysis/run_outputs.h"
 #include "cli/commands.h"
 #include "cli/ensemble/run_request.h"
-#include "cli/ensemble/sweep.h"
+#include "cli/ensemble/sweep_file.h"
 #include "cli/ensemble_console.h"
 #include "scree_version.h"
 

@@ -52,17 +52,18 @@ void print_result(const RunResult& result) {
     const MeanStd height = mean_std(rebound);
     fmt::print("\nrebound height {} m\n", with_std(height.mean, height.std));
   }
-  std::vector<double> angle, half, fit;
+  std::vector<double> angle, over, half;
   for (const SeedResult& s : result.seeds)
     if (s.repose) {
       angle.push_back(s.repose->angle);
+      over.push_back(s.repose->height_over_radius);
       half.push_back(s.repose->half_coverage);
-      fit.push_back(s.repose->slope_fit);
     }
   if (!angle.empty()) {
-    const MeanStd a = mean_std(angle), h = mean_std(half), f = mean_std(fit);
-    fmt::print("\nrepose angle atan(H/R) {} deg; half coverage {}; slope fit {}\n", with_std(a.mean, a.std),
-               with_std(h.mean, h.std), with_std(f.mean, f.std));
+    const MeanStd a = mean_std(angle), o = mean_std(over), h = mean_std(half);
+    fmt::print(
+        "\nrepose angle (slope of the flank) {} deg; height over radius {}; over half-covered radius {}\n",
+        with_std(a.mean, a.std), with_std(o.mean, o.std), with_std(h.mean, h.std));
   }
   print_comparison(result.comparison);
   for (const std::string& note : result.notes) fmt::print("\nnote: {}\n", note);

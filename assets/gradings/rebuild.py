@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Rebuilds the four gradings of this folder from the thesis's printed numbers.
+"""Rebuilds the gradings of this folder from the thesis's printed numbers.
 
     rebuild.py TABLES [OUTPUT]
 
@@ -203,6 +203,9 @@ def main():
                                'straight from 1.2 m to the largest size.',
                                describe(cm0) + ' (printed 2.9, 0.9); %.1f %% above 1 m (10); %.0f spheres in 300 t.'
                                % (100 - passing(cm0, 1000), spheres(cm0, 3e5))], cm0)
+    coarse = scalp(cm0, 250.0, 1500.0)
+    write(output / 'CM0_250mm.csv', ['CM0 without what is finer than 250 mm, for sweeps with a quarter of the spheres. Made by rebuild.py.',
+                                     describe(coarse) + '; %.0f spheres in 300 t.' % spheres(coarse, 3e5)], coarse)
     qb0 = rebuild_qb0(tables)
     write(output / 'QB0.csv', ['QB0: field grading of the models. ' + thesis,
                                'Table 2.1, Zhang row, less the 4.5 % below 0.1 m. The row ends at D10 = 304 mm: the point at 200 mm',

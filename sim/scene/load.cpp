@@ -15,32 +15,18 @@ namespace {
 
 constexpr int kTries = 400;
 constexpr double kGrowth = 1.02;
+constexpr double kDensest =
+    0.6;  // solid fraction; no wide grading gets denser when spheres are put at random
 
-}  // namespace
-
-Load fill_region(const LoadRegion& region, const std::vector<double>& diameters, std::uint64_t seed,
-                 std::uint64_t dump) {
-  Load load;
-  load.height = region.length.z();
-  if (diameters.empty()) return load;
+// Places the spheres one after another where they touch none before; false when one finds no place.
+bool fill(Load& load, const LoadRegion& region, const std::vector<double>& diameters, Random random) {
   const bool cylinder = region.length.y() == 0;
-  const double largest = diameters.front(), smallest = diameters.back();
-  const double width = cylinder ? region.length.x() : std::min(region.length.x(), region.length.y());
-  if (largest > width)
-    throw std::invalid_argument(
-        fmt::format("a sphere of {:.3f} m does not fit into a container {:.3f} m wide", largest, width));
-  load.height = std::max(load.height, 1.01 * largest);
-
-  Random random(seed, dump, RandomPurpose::positions);
   NeighbourGrid grid;
-  grid.reset(static_cast<int>(diameters.size()), 0.5 * smallest, 0.5 * largest);
+  grid.reset(static_cast<int>(diameters.size()), 0.5 * diameters.back(), 0.5 * diameters.front());
   for (int i = 0; i < static_cast<int>(diameters.size()); ++i) {
     const double r = 0.5 * diameters[i];
-    for (int tries = 0;; ++tries) {
-      if (tries == kTries) {
-        load.height *= kGrowth;
-        tries = 0;
-      }
+    bool free = false;
+    for (int tries = 0; tries < kTries && !free; ++tries) {
       Vec3 x;
       if (cylinder) {
         const double rho = (0.5 * region.length.x() - r) * std::sqrt(random.uniform());
@@ -52,17 +38,41 @@ Load fill_region(const LoadRegion& region, const std::vector<double>& diameters,
       }
       x.z() = random.uniform(r, load.height - r);
       grid.place(i, x, r);
-      bool free = true;
+      free = true;
       grid.query(i, [&](int j) {
         const double reach = r + grid.site(j).w;
         if ((x - grid.site(j).vec()).squaredNorm() < reach * reach) free = false;
       });
-      if (free) {
-        load.positions.push_back(x);
-        break;
-      }
+      if (free) load.positions.push_back(x);
     }
+    if (!free) return false;
   }
+  return true;
+}
+
+}  // namespace
+
+Load fill_region(const LoadRegion& region, const std::vector<double>& diameters, std::uint64_t seed,
+                 std::uint64_t dump) {
+  Load load;
+  load.height = region.length.z();
+  if (diameters.empty()) return load;
+  const double largest = diameters.front();
+  const double width =
+      region.length.y() == 0 ? region.length.x() : std::min(region.length.x(), region.length.y());
+  if (largest > width)
+    throw std::invalid_argument(
+        fmt::format("a sphere of {:.3f} m does not fit into a container {:.3f} m wide", largest, width));
+  double solid = 0;
+  for (const double d : diameters) solid += std::numbers::pi / 6 * d * d * d;
+  const double area = region.length.y() == 0 ? 0.25 * std::numbers::pi * width * width
+                                             : region.length.x() * region.length.y();
+  load.height = std::max({load.height, 1.01 * largest, solid / (kDensest * area)});
+
+  // A region that is too small grows, and is filled anew from the start: were only the rest put into what was
+  // added, the fines, which are placed last, would lie on top.
+  for (; !fill(load, region, diameters, Random(seed, dump, RandomPurpose::positions)); load.height *= kGrowth)
+    load.positions.clear();
   return load;
 }
 

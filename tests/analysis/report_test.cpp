@@ -85,8 +85,9 @@ TEST(Report, ShowsAReposeTest) {
   seed.final_state.grains = heap;
   seed.repose = ReposeAngle{};
   seed.repose->angle = 36.9;
+  seed.repose->height_over_radius = 35.1;
   seed.repose->half_coverage = 38.2;
-  seed.repose->slope_fit = 35.1;
+  seed.repose->flank_height = 0.54;
   seed.repose->height = 0.54;
   seed.repose->radius = 0.72;
   Comparison row = fake_comparison("angle", "whole", "pfc3d", 34.9, 3.1, 36.9, 0.65);

@@ -64,13 +64,14 @@ class Cone : public testing::TestWithParam<double> {};
 TEST_P(Cone, IsReadWithinAGrain) {
   const double angle = GetParam(), radius = 0.5, d = 0.02;
   const ReposeAngle read = measure_repose(cone(angle));
-  EXPECT_NEAR(read.slope_fit, angle, 1.5);
+  EXPECT_NEAR(read.angle, angle, 1.5);
+  EXPECT_NEAR(read.flank_height, 0.5 * std::tan(radians(angle)), 0.03);
   // H and R are each known to one grain: d(atan(H / R)) = sin(2 theta) / 2 (dH / H + dR / R).
   const double height = radius * std::tan(radians(angle));
   const double tolerance = degrees(0.5 * std::sin(2 * radians(angle)) * (d / height + d / radius));
   EXPECT_NEAR(read.height, height, d);
   EXPECT_NEAR(read.radius, radius, d);
-  EXPECT_NEAR(read.angle, angle, tolerance);
+  EXPECT_NEAR(read.height_over_radius, angle, tolerance);
   // The lattice's own steps (0.75 d) add to where half is covered.
   EXPECT_NEAR(read.half_coverage, angle, 1.5 * tolerance);
   EXPECT_EQ(read.radii[0] > 0 && read.radii[1] > 0 && read.radii[2] > 0 && read.radii[3] > 0, true);
@@ -82,9 +83,9 @@ TEST_P(Cone, RunawaysDoNotCount) {
   scatter_runaways(heap, 40, 0.6, 1.5);  // covers 0.2 % of that ring
   const ReposeAngle read = measure_repose(heap);
   EXPECT_EQ(read.runaways, alone.runaways + 40);
-  EXPECT_NEAR(read.angle, alone.angle, 0.5);
+  EXPECT_NEAR(read.height_over_radius, alone.height_over_radius, 0.5);
   EXPECT_NEAR(read.half_coverage, alone.half_coverage, 0.5);
-  EXPECT_NEAR(read.slope_fit, alone.slope_fit, 0.5);
+  EXPECT_NEAR(read.angle, alone.angle, 0.5);
 }
 
 INSTANTIATE_TEST_SUITE_P(Angles, Cone, testing::Values(20.0, 25.0, 30.0, 35.0, 40.0));
@@ -93,8 +94,24 @@ TEST(ReposeAngle, AxisAndFloorAreFoundAndSubtracted) {
   const ReposeAngle here = measure_repose(cone(30));
   const ReposeAngle there = measure_repose(cone(30, 0.5, 0.02, 12.3, -4.5, 7.0), 7.0);
   EXPECT_NEAR(there.height, here.height, 1e-9);
-  EXPECT_NEAR(there.angle, here.angle, 1e-6);
-  EXPECT_NEAR(there.slope_fit, here.slope_fit, 0.1);
+  EXPECT_NEAR(there.height_over_radius, here.height_over_radius, 1e-6);
+  EXPECT_NEAR(there.angle, here.angle, 0.1);
+}
+
+TEST(ReposeAngle, RoundedTopAndThinApronDoNotChangeTheFlank) {
+  auto heap = cone(35);
+  const double height = 0.5 * std::tan(radians(35));
+  std::erase_if(heap, [&](const Grain& grain) { return grain.position.z() > 0.9 * height; });
+  Random random(9, 0, RandomPurpose::positions);
+  for (int i = 0; i < 5000; ++i) {  // one grain high, from 0.49 to 0.7 m
+    const double r = std::sqrt(random.uniform(0.24, 0.49)), a = random.uniform(0, 2 * std::numbers::pi);
+    Grain grain = sphere(0.02);
+    grain.position = Vec3(r * std::cos(a), r * std::sin(a), 0.01);
+    heap.push_back(grain);
+  }
+  const ReposeAngle read = measure_repose(heap);
+  EXPECT_NEAR(read.angle, 35, 1.5);
+  EXPECT_LT(read.height_over_radius, read.angle - 3);
 }
 
 TEST(ReposeAngle, DirectionsAreTellApart) {
@@ -118,6 +135,7 @@ TEST(ReposeAngle, GrainPerchedOnTheConeIsNotItsTop) {
 
 TEST(ReposeAngle, NothingAndOneGrain) {
   EXPECT_TRUE(std::isnan(measure_repose({}).angle));
+  EXPECT_TRUE(std::isnan(measure_repose({}).height_over_radius));
   Grain grain = sphere(0.1);
   grain.position = Vec3(1, 2, 0.05);
   const ReposeAngle read = measure_repose({grain});

@@ -101,5 +101,19 @@ TEST(Load, GrowsWhenFullAndRefusesWhatCannotFit) {
   EXPECT_THROW(fill_region({{2, 2, 1}}, {2.5}, 1, 1), std::invalid_argument);
 }
 
+TEST(Load, RegionThatHasGrownHoldsTheSameMixAtEveryHeight) {
+  std::vector<double> diameters(60, 0.5);
+  diameters.resize(6060, 0.12);  // coarse and fine rock, half of the volume each
+  const Load load = fill_region({{2, 2, 2}}, diameters, 1, 1);
+  ASSERT_GT(load.height, 2.0);
+  double fine = 0, above = 0;
+  for (std::size_t k = 60; k < diameters.size(); ++k) {
+    fine += 1;
+    above += load.positions[k].z() > 0.75 * load.height;
+  }
+  // Large spheres keep half a diameter from the top, so a little more than a quarter of the fines lies there.
+  EXPECT_LT(above / fine, 0.32);
+}
+
 }  // namespace
 }  // namespace scree

@@ -12,6 +12,7 @@ namespace scree {
 /// One point: keys of the scenario and their values, as text.
 struct SweepPoint {
   std::vector<std::string> values;  ///< in the order of Sweep::parameters
+  std::string compare;              ///< case in assets/reference/results.csv; may be empty
   Scenario scenario;                ///< with these values, checked
 };
 
@@ -33,7 +34,8 @@ struct SweepResult {
 ///   seeds: [1, 2, 3]                default: those of the scenario
 ///   set: {material.alpha: 0.4}      further values that differ from the scenario's
 ///   ties: {material.mu_r: material.mu}   the first key takes the value of the second
-///   design:
+///   compare: lab_repose_{material.mu}_{material.mu_r}   case of printed values that each point is held
+///   against design:
 ///     type: grid | list | latin_hypercube | sobol
 ///     parameters: {material.mu: [0.1, 0.2]}          grid: every combination
 ///     points: [{material.mu: 0.2}, ...]               list

@@ -1,9 +1,11 @@
-#include "cli/ensemble/sweep.h"
+#include "cli/ensemble/sweep_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
+#include "analysis/results.h"
 #include "cli/ensemble/design.h"
 #include "cli/ensemble/file_reader.h"
 #include "sim/scene/scenario_values.h"
@@ -111,6 +113,27 @@ void read_design(const YamlNode& root, Sweep& sweep, FileReader& reader) {
   reader.fail(type == nullptr ? design->place : type->value.place, "design.type: one of " + join(types));
 }
 
+// The case of printed values of every point: the text with its values for {key}.
+void name_cases(const YamlEntry& entry, const fs::path& asset_dir, Sweep& sweep, FileReader& reader) {
+  const auto pattern = reader.scalar(entry.value, "compare");
+  if (!pattern) return;
+  std::set<std::string> cases;
+  for (const ReferenceValue& value : read_reference(asset_dir / "reference" / "results.csv"))
+    cases.insert(value.case_name);
+  for (SweepPoint& point : sweep.points) {
+    point.compare = *pattern;
+    for (std::size_t k = 0; k < sweep.parameters.size(); ++k) {
+      const std::string key = "{" + sweep.parameters[k] + "}";
+      for (std::size_t at; (at = point.compare.find(key)) != std::string::npos;)
+        point.compare.replace(at, key.size(), point.values[k]);
+    }
+    if (!cases.contains(point.compare))
+      return reader.fail(
+          entry.value.place,
+          fmt::format("compare: '{}' is no case in assets/reference/results.csv", point.compare));
+  }
+}
+
 }  // namespace
 
 SweepResult load_sweep(const fs::path& file, const fs::path& asset_dir) {
@@ -120,7 +143,7 @@ SweepResult load_sweep(const fs::path& file, const fs::path& asset_dir) {
   sweep.name = file.stem().string();
   const auto root = read_yaml(file, result.errors);
   if (!root) return result;
-  reader.allow(*root, {"scenario", "seeds", "set", "ties", "design"}, "");
+  reader.allow(*root, {"scenario", "seeds", "set", "ties", "compare", "design"}, "");
   read_design(*root, sweep, reader);
   const Variation variation = read_variation(*root, sweep.parameters, reader);
   const auto scenario = scenario_at(*root, file, true, reader);
@@ -136,6 +159,7 @@ SweepResult load_sweep(const fs::path& file, const fs::path& asset_dir) {
       reader.fail(root->place, "a point is no scenario: " + error.text());
     return result;
   }
+  if (const YamlEntry* compare = root->find("compare")) name_cases(*compare, asset_dir, sweep, reader);
   if (!reader.good()) return result;
   if (root->find("seeds") == nullptr)
     sweep.seeds = sweep.points.front().scenario.seeds;

@@ -1,5 +1,5 @@
 // Sweep files: what they give, and what is said about wrong ones.
-#include "cli/ensemble/sweep.h"
+#include "cli/ensemble/sweep_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -54,6 +54,16 @@ TEST_F(SweepFile, GridIsEveryCombinationTheLastFastest) {
   EXPECT_EQ(r.sweep.points[5].scenario.material.mu, 0.2);
   EXPECT_EQ(r.sweep.points[5].scenario.material.mu_r, 0.5);
   EXPECT_EQ(std::get<ReposeLift>(r.sweep.points[5].scenario.experiment).mass, 10);
+}
+
+TEST_F(SweepFile, EveryPointNamesItsPrintedCase) {
+  const std::string grid =
+      "design: {type: grid, parameters: {material.mu: [0.1, 0.2], material.mu_r: [0.4]}}\n";
+  const SweepResult r = load("compare: \"lab_repose_{material.mu}_{material.mu_r}\"\n" + grid);
+  ASSERT_TRUE(r.errors.empty()) << r.errors.front().text();
+  EXPECT_EQ(r.sweep.points[1].compare, "lab_repose_0.2_0.4");
+  EXPECT_THAT(first_error("compare: \"lab_{material.mu}\"\n" + grid),
+              HasSubstr("compare: 'lab_0.1' is no case in assets/reference/results.csv"));
 }
 
 TEST_F(SweepFile, TiedKeyFollows) {

@@ -1,0 +1,206 @@
+#include "cli/ensemble/sweep_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include "sim/io/text_file.h"
+
+namespace scree {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+const char* name_of(RunState state) {
+  return state == RunState::done ? "done" : state == RunState::failed ? "failed" : "running";
+}
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? "\"\"" : c == '\n' ? " " : std::string(1, c);
+  return out + "\"";
+}
+
+std::vector<std::string> csv_fields(const std::string& line) {
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    const char c = line[k];
+    if (quoted && c == '"' && k + 1 < line.size() && line[k + 1] == '"')
+      fields.back() += line[++k];
+    else if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      fields.emplace_back();
+    else
+      fields.back() += c;
+  }
+  return fields;
+}
+
+template <class Number>
+std::optional<Number> number(const std::string& text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+// 0.2 and 0.20 are the same value.
+bool same_value(const std::string& a, const std::string& b) {
+  const auto x = number<double>(a), y = number<double>(b);
+  return x && y ? *x == *y : a == b;
+}
+
+bool is_reading_of(const std::string& output, const ReferenceValue& printed) {
+  const std::string &quantity = printed.quantity, &section = printed.section;
+  if (quantity == "angle")
+    return output == "angle_deg" || output == "height_over_radius_deg" || output == "half_coverage_deg";
+  if (quantity == "slope_angle") return output == "slope_angle_deg";
+  if (quantity == "rebound_height") return output == "rebound_height_m";
+  return output == quantity + "_" + section || output == quantity + "_m_" + section;
+}
+
+}  // namespace
+
+MeanStd PointResults::of(const std::string& output) const {
+  std::vector<double> values;
+  for (const auto& run : runs)
+    if (run && run->outputs.contains(output)) values.push_back(run->outputs.at(output));
+  return mean_std(values);
+}
+
+int PointResults::count(RunState state) const {
+  return static_cast<int>(
+      std::count_if(runs.begin(), runs.end(), [&](const auto& run) { return run && run->state == state; }));
+}
+
+std::set<std::string> outputs_of(const std::vector<PointResults>& points) {
+  std::set<std::string> names;
+  for (const PointResults& point : points)
+    for (const auto& run : point.runs)
+      if (run)
+        for (const auto& [name, value] : run->outputs) names.insert(name);
+  return names;
+}
+
+void write_sweep_csv(const Sweep& sweep, const std::vector<PointResults>& points, const fs::path& file) {
+  const std::set<std::string> outputs = outputs_of(points);
+  std::string text;
+  for (const std::string& name : sweep.parameters) text += csv_field(name) + ",";
+  text += "seed,state,version,wall_seconds";
+  for (const std::string& name : outputs) text += "," + csv_field(name);
+  text += ",message\n";
+  for (const PointResults& p : points)
+    for (std::size_t k = 0; k < p.runs.size(); ++k) {
+      for (const std::string& value : p.point->values) text += csv_field(value) + ",";
+      const auto& run = p.runs[k];
+      text += fmt::format("{},{},{},{}", p.seeds[k], run ? name_of(run->state) : "not run",
+                          run ? run->version : "",
+                          run && run->wall_seconds > 0 ? fmt::format("{:.1f}", run->wall_seconds) : "");
+      for (const std::string& name : outputs)
+        text += run && run->outputs.contains(name) ? fmt::format(",{:.8g}", run->outputs.at(name)) : ",";
+      text += "," + csv_field(run ? run->message : "") + "\n";
+    }
+  write_text_file(file, text);
+}
+
+std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const fs::path& file) {
+  std::ifstream in(file);
+  if (!in) throw std::runtime_error(fmt::format("{}: cannot be opened", file.string()));
+  std::vector<PointResults> points;
+  for (const SweepPoint& point : sweep.points)
+    points.push_back({&point, sweep.seeds, std::vector<std::optional<StoredResult>>(sweep.seeds.size())});
+
+  std::string line;
+  int at_line = 0;
+  const auto fail = [&](const std::string& what) {
+    throw std::runtime_error(fmt::format("{}:{}: {}", file.string(), at_line, what));
+  };
+  std::vector<std::string> header;
+  const std::size_t first = sweep.parameters.size();
+  while (std::getline(in, line)) {
+    ++at_line;
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line.empty() || line.front() == '#') continue;
+    const std::vector<std::string> fields = csv_fields(line);
+    if (header.empty()) {
+      header = fields;
+      std::vector<std::string> expected = sweep.parameters;
+      expected.insert(expected.end(), {"seed", "state", "version", "wall_seconds"});
+      if (header.size() < expected.size() + 1 ||
+          !std::equal(expected.begin(), expected.end(), header.begin()) || header.back() != "message")
+        fail(fmt::format("not a table of this sweep: its columns begin with {}", fmt::join(expected, ",")));
+      continue;
+    }
+    if (fields.size() != header.size())
+      fail(fmt::format("{} columns, {} are needed", fields.size(), header.size()));
+    const auto seed = number<std::uint64_t>(fields[first]);
+    if (!seed) fail(fmt::format("seed '{}' is no integer", fields[first]));
+    if (fields[first + 1] == "not run" || fields[first + 1] == "running") continue;
+    StoredResult run;
+    if (fields[first + 1] != "done" && fields[first + 1] != "failed")
+      fail(fmt::format("state '{}' is none of done, failed, running, not run", fields[first + 1]));
+    run.state = fields[first + 1] == "done" ? RunState::done : RunState::failed;
+    run.version = fields[first + 2];
+    run.wall_seconds = number<double>(fields[first + 3]).value_or(0);
+    run.message = fields.back();
+    for (std::size_t k = first + 4; k + 1 < fields.size(); ++k) {
+      if (fields[k].empty()) continue;
+      const auto value = number<double>(fields[k]);
+      if (!value) fail(fmt::format("{} '{}' is no number", header[k], fields[k]));
+      run.outputs[header[k]] = *value;
+    }
+    for (PointResults& point : points) {
+      if (!std::equal(point.point->values.begin(), point.point->values.end(), fields.begin(), same_value))
+        continue;
+      const auto found = std::find(point.seeds.begin(), point.seeds.end(), *seed);
+      if (found != point.seeds.end()) point.runs[static_cast<std::size_t>(found - point.seeds.begin())] = run;
+    }
+  }
+  if (header.empty()) fail("the file is empty");
+  return points;
+}
+
+SweepComparison compare_sweep(const std::vector<PointResults>& points, const std::string& output,
+                              const std::vector<ReferenceValue>& reference) {
+  std::map<std::string, const ReferenceValue*> printed;  // by case
+  for (const ReferenceValue& value : reference) {
+    if (!is_reading_of(output, value)) continue;
+    const ReferenceValue*& here = printed[value.case_name];
+    if (here == nullptr || value.kind == "pfc3d") here = &value;
+  }
+  SweepComparison result;
+  double largest = 0;
+  for (const PointResults& point : points) {
+    const auto found = printed.find(point.point->compare);
+    const MeanStd simulated = point.of(output);
+    result.printed.push_back(found == printed.end() ? nan : found->second->value);
+    result.difference.push_back(simulated.n > 0 ? simulated.mean - result.printed.back() : nan);
+    const double difference = result.difference.back();
+    if (!std::isfinite(difference)) continue;
+    ++result.compared;
+    result.mean += difference;
+    result.rms += difference * difference;
+    if (std::abs(difference) >= largest) {
+      largest = std::abs(difference);
+      result.worst = static_cast<int>(result.printed.size()) - 1;
+    }
+  }
+  if (result.compared > 0) {
+    result.mean /= result.compared;
+    result.rms = std::sqrt(result.rms / result.compared);
+  }
+  return result;
+}
+
+}  // namespace scree
