@@ -1,7 +1,8 @@
 // Readings of the repose angle.
 //
-// The angle is the slope of the heap's surface, seen from above and averaged over all directions, between 20
-// and 80 % of its height: a straight line is fitted there. It needs no decision where a heap ends.
+// The angle is the slope of the heap's surface, seen from above and averaged over all directions: a straight
+// line is fitted between 20 and 80 % of the height that this averaged surface has at the axis. It needs no
+// decision where a heap ends, and no single block on its top moves it.
 //
 // The thesis describes atan(H / R): H the top of the cone, R the mean over four directions of the distance
 // from the centre to where particles no longer overlap, runaways left out. Here: a ray from the axis in each
@@ -20,6 +21,7 @@ namespace scree {
 
 namespace {
 
+constexpr double kAxisShare = 0.1;  // of R, about the axis, over which the surface's height there is averaged
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 double degrees(double radians) {
@@ -148,6 +150,16 @@ double falls_below(const Rings& rings, const std::vector<double>& values, double
   return nan;
 }
 
+/// Mean height of the surface within `radius` (one ring at least).
+double height_within(const Rings& rings, double radius) {
+  double area = 0, volume = 0;
+  for (std::size_t k = 0; k < rings.height.size() && (k == 0 || rings.centre(k) < radius); ++k) {
+    area += rings.centre(k);
+    volume += rings.centre(k) * rings.height[k];
+  }
+  return volume / area;
+}
+
 /// The least-squares line through the rings between 80 % and 20 % of `height`: its fall over its length, and
 /// its height at the axis.
 std::array<double, 2> fitted_flank(const Rings& rings, double height) {
@@ -196,7 +208,7 @@ ReposeAngle measure_repose(const std::vector<Grain>& heap, double floor) {
   if (!(extent > 0)) return result;
   const Rings rings = rings_of(heap, x0, y0, floor, extent);
   result.half_coverage = degrees(std::atan2(result.height, falls_below(rings, rings.covered, 0.5)));
-  const auto [fall, at_axis] = fitted_flank(rings, result.height);
+  const auto [fall, at_axis] = fitted_flank(rings, height_within(rings, kAxisShare * result.radius));
   result.angle = degrees(std::atan(fall));
   result.flank_height = at_axis;
   return result;

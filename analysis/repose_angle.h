@@ -9,13 +9,13 @@ namespace scree {
 /// `angle` is the one that is compared and calibrated. The thesis describes `height_over_radius`; its tables
 /// are met by the slope of the flank (docs/calibration.md has the three readings against all of them).
 struct ReposeAngle {
-  double angle = 0;  ///< slope of the line fitted to the heap's surface between 20 and 80 % of its height
-  double height_over_radius = 0;   ///< atan(H / R), R the mean of four directions out to where grains no
-                                   ///< longer overlap
-  double half_coverage = 0;        ///< atan(H / R_h), R_h where half of the ring's plan area is covered
-  double flank_height = 0;         ///< m over the floor, where the fitted line meets the axis
-  double height = 0;               ///< H, top of the cone, m
-  double radius = 0;               ///< mean R, m
+  double angle = 0;               ///< slope of the mean surface between 20 and 80 % of its height at the axis
+  double height_over_radius = 0;  ///< atan(H / R), R the mean of four directions out to where grains no
+                                  ///< longer overlap
+  double half_coverage = 0;       ///< atan(H / R_h), R_h where half of the ring's plan area is covered
+  double flank_height = 0;        ///< m over the floor, where the fitted line meets the axis
+  double height = 0;              ///< H, top of the cone, m
+  double radius = 0;              ///< mean R, m
   double radii[4] = {0, 0, 0, 0};  ///< +x, +y, -x, -y
   int runaways = 0;                ///< grains beyond R, left out
 };

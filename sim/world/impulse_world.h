@@ -26,6 +26,7 @@ class ImpulseWorld final : public RockWorld {
   void prepare();
   void read_back();
   bool changed_ = true;
+  double reach_ = 0.02;  // m, from how far apart Bullet takes two shapes for touching
   std::vector<int> movable_;  // indices
 };
 

@@ -114,6 +114,17 @@ TEST(ReposeAngle, RoundedTopAndThinApronDoNotChangeTheFlank) {
   EXPECT_LT(read.height_over_radius, read.angle - 3);
 }
 
+TEST(ReposeAngle, BlockOnTheTopDoesNotChangeTheFlank) {
+  auto heap = cone(35);
+  const ReposeAngle before = measure_repose(heap);
+  Grain block = sphere(0.12);
+  block.position = Vec3(0, 0, before.height);
+  heap.push_back(block);
+  const ReposeAngle after = measure_repose(heap);
+  EXPECT_NEAR(after.angle, before.angle, 1.0);
+  EXPECT_GT(after.height_over_radius, before.height_over_radius + 3);
+}
+
 TEST(ReposeAngle, DirectionsAreTellApart) {
   auto heap = cone(30);
   for (Grain& grain : heap)  // stretched along +x only

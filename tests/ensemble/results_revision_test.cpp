@@ -33,7 +33,7 @@ TEST(ResultsRevision, IsRaisedWhenNumbersChange) {
       text +=
           fmt::format("{} {} {} {}\n", grain.id, grain.position.x(), grain.position.y(), grain.position.z());
   }
-  EXPECT_EQ(kResultsRevision, 1);
+  EXPECT_EQ(kResultsRevision, 2);
   EXPECT_EQ(fmt::format("{:016x}", XXH3_64bits(text.data(), text.size())), "1e3aadd9ab7dfdb5");
 }
 

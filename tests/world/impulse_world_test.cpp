@@ -90,5 +90,17 @@ TEST(ImpulseWorld, FixedBallsStayAndCarry) {
   EXPECT_NEAR(world->snapshot().grains[0].position.z(), 2 * kRadius, 0.04 * kRadius);
 }
 
+// Bullet pairs what is nearer than 5 cm unless told otherwise: each of these with hundreds.
+TEST(ImpulseWorld, SmallSpheresArePairedWithTheirNeighboursAlone) {
+  const auto world = make_impulse_world(WorldSettings());
+  std::vector<NewSphere> spheres;
+  for (int i = 0; i < 1000; ++i)
+    spheres.push_back(ball({0.009 * (i % 10), 0.009 * (i / 10 % 10), 0.005 + 0.009 * (i / 100)}, 0.004));
+  world->add_spheres(spheres);
+  add_floor(*world, {0.4, 0.4});
+  world->advance_to(0.02);
+  EXPECT_LT(world->getPairCache()->getNumOverlappingPairs(), 15 * 1000);
+}
+
 }  // namespace
 }  // namespace scree
