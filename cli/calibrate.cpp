@@ -11,6 +11,7 @@
 #include "analysis/run_outputs.h"
 #include "analysis/sweep_chart.h"
 #include "cli/commands.h"
+#include "cli/ensemble/equivalence_fit.h"
 #include "cli/ensemble/run_request.h"
 #include "cli/ensemble_console.h"
 #include "cli/output_folder.h"
@@ -62,34 +63,51 @@ std::string refusal(const scree::CalibrationSpec& spec) {
   return {};
 }
 
-// Does simulations through the store.
+// Scenarios with their seeds through the store; what is found of each.
+std::vector<std::optional<scree::StoredResult>> simulate(
+    const std::vector<std::pair<scree::ScenarioResult, std::uint64_t>>& runs, scree::ResultsStore& store,
+    const CalibrateOptions& options) {
+  std::vector<scree::RunRequest> requests;
+  for (const auto& [loaded, seed] : runs) {
+    if (!loaded.errors.empty()) throw std::invalid_argument(loaded.errors.front().text());
+    requests.push_back(scree::run_request(loaded.scenario, seed, scree::results_version(), asset_dir()));
+  }
+  run_with_progress(requests, store, options.jobs, options.again);
+  if (interrupted) throw scree::CalibrationStopped("interrupted; the same command goes on from here");
+  std::vector<std::optional<scree::StoredResult>> results;
+  for (const scree::RunRequest& request : requests) results.push_back(store.find(request.key));
+  return results;
+}
+
+bool is_good(const std::optional<scree::StoredResult>& result) {
+  return result && result->state == scree::RunState::done && result->at_rest();
+}
+
+std::string why_left_out(const std::optional<scree::StoredResult>& result) {
+  return !result                                  ? "it was not done"
+         : result->state == scree::RunState::done ? "its pile did not come to rest"
+                                                  : result->message;
+}
+
+// Does the simulations of a calibration.
 scree::Simulator simulator(const scree::CalibrationSpec& spec, scree::ResultsStore& store,
                            const CalibrateOptions& options) {
   return [&](const std::vector<scree::CalibrationRun>& runs) {
-    std::vector<scree::RunRequest> requests;
-    for (const scree::CalibrationRun& run : runs) {
-      const scree::ScenarioResult loaded = scenario_at(spec, run.scenario, values_at(spec, run.at));
-      if (!loaded.errors.empty()) throw std::invalid_argument(loaded.errors.front().text());
-      requests.push_back(
-          scree::run_request(loaded.scenario, run.seed, scree::results_version(), asset_dir()));
-    }
-    run_with_progress(requests, store, options.jobs, options.again);
-    if (interrupted) throw scree::CalibrationStopped("interrupted; the same command goes on from here");
+    std::vector<std::pair<scree::ScenarioResult, std::uint64_t>> scenarios;
+    for (const scree::CalibrationRun& run : runs)
+      scenarios.emplace_back(scenario_at(spec, run.scenario, values_at(spec, run.at)), run.seed);
+    const auto found = simulate(scenarios, store, options);
     std::vector<std::vector<double>> values;
     for (std::size_t k = 0; k < runs.size(); ++k) {
-      const auto found = store.find(requests[k].key);
-      const bool good = found && found->state == scree::RunState::done && found->at_rest();
       values.emplace_back();
       for (const auto& target : spec.targets) {
-        const bool given =
-            good && target.scenario == runs[k].scenario && found->outputs.contains(target.output);
-        values.back().push_back(given ? found->outputs.at(target.output) : NAN);
+        const bool given = is_good(found[k]) && target.scenario == runs[k].scenario &&
+                           found[k]->outputs.contains(target.output);
+        values.back().push_back(given ? found[k]->outputs.at(target.output) : NAN);
       }
-      if (good) continue;
-      fmt::print(stderr, "a run with {} is left out: {}\n", fmt::join(values_at(spec, runs[k].at), ", "),
-                 found && found->state == scree::RunState::done ? "its pile did not come to rest"
-                 : found                                        ? found->message
-                                                                : "it was not done");
+      if (!is_good(found[k]))
+        fmt::print(stderr, "a run with {} is left out: {}\n", fmt::join(values_at(spec, runs[k].at), ", "),
+                   why_left_out(found[k]));
     }
     return values;
   };
@@ -255,9 +273,63 @@ void print_answer(const scree::CalibrationSpec& spec, const scree::CalibrationRe
         100 * result.posterior->excess_uncertainty());
 }
 
+// The table of settings of Bullet that are equivalent to rrlinear's parameters.
+int run_equivalence(const CalibrateOptions& options) {
+  const scree::EquivalenceSpecResult loaded = scree::load_equivalence(options.file);
+  for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
+  if (!loaded.errors.empty()) return kBadInput;
+  const scree::EquivalenceSpec& spec = loaded.spec;
+  const fs::path out = options.out.empty() ? free_run_folder(spec.name) : options.out;
+  if (!prepare_folder(out, options.force)) return kBadInput;
+  const std::unique_ptr<scree::ResultsStore> store = open_store(options.store, false);
+  if (!store) return kBadInput;
+  std::vector<scree::EquivalenceNode> nodes;
+  try {
+    nodes = scree::fit_equivalence(spec, [&](const std::vector<scree::EquivalenceRun>& runs) {
+      std::vector<std::pair<scree::ScenarioResult, std::uint64_t>> scenarios;
+      for (const scree::EquivalenceRun& run : runs)
+        scenarios.emplace_back(scree::load_scenario(spec.scenario, run.overrides, asset_dir()), run.seed);
+      const auto found = simulate(scenarios, *store, options);
+      std::vector<double> values;
+      for (std::size_t k = 0; k < runs.size(); ++k) {
+        const bool given = is_good(found[k]) && found[k]->outputs.contains(spec.output);
+        values.push_back(given ? found[k]->outputs.at(spec.output) : NAN);
+        if (!given)
+          fmt::print(stderr, "a run with {} is left out: {}\n", fmt::join(runs[k].overrides, ", "),
+                     why_left_out(found[k]));
+      }
+      return values;
+    });
+  } catch (const scree::CalibrationStopped& stopped) {
+    fmt::print(stderr, "{}\n", stopped.what());
+    return kInterrupted;
+  } catch (const std::invalid_argument& wrong) {
+    fmt::print(stderr, "{}\n", wrong.what());
+    return kBadInput;
+  }
+  fmt::print("{:>6} {:>6} {:>14} {:>9} {:>8} {:>9} {:>8} {:>11}\n", "mu", "mu_r", "local_damping", "rrlinear",
+             "impulse", "friction", "rolling", "");
+  for (const scree::EquivalenceNode& node : nodes)
+    fmt::print("{:>6g} {:>6g} {:>14g} {:>9.2f} {:>8.2f} {:>9.4f} {:>8.4f}{}\n", node.mu, node.mu_r,
+               node.local_damping, node.angle_rrlinear, node.angle_impulse, node.friction, node.rolling,
+               node.found ? "" : "   left out");
+  const fs::path table = out / "equivalent.csv";
+  scree::write_text_file(
+      table,
+      scree::equivalence_csv(
+          nodes,
+          {fmt::format("Bullet's settings that give rrlinear's {} in {}, within {:g} degrees; {} seeds.",
+                       spec.output, spec.scenario.filename().string(), spec.within, spec.seeds.size()),
+           fmt::format("Made by scree {} ({}): scree calibrate {}.", SCREE_VERSION, SCREE_REVISION,
+                       options.file.filename().string())}));
+  fmt::print("\ntable: {}; engine impulse takes it from assets/impulse/equivalent.csv\n", table.string());
+  return kOk;
+}
+
 }  // namespace
 
 int run_calibrate(const CalibrateOptions& options) {
+  if (scree::is_equivalence(options.file)) return run_equivalence(options);
   const scree::CalibrationSpecResult loaded = scree::load_calibration(options.file);
   for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
   if (!loaded.errors.empty()) return kBadInput;

@@ -119,9 +119,16 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
   if (left_out > 0)
     result.notes.push_back(fmt::format("{:.1f} t lie above the crest's height and belong to no section",
                                        left_out / 1000 / static_cast<double>(result.seeds.size())));
-  if (impulse)
+  if (scenario.bullet)
     result.notes.push_back(
-        "the impulse engine is not calibrated: its repose angles are not those of rrlinear");
+        scenario.bullet->error_deg > 0
+            ? fmt::format("engine impulse: Bullet's friction {:.3g} and rolling friction {:.3g} stand for mu "
+                          "and mu_r; "
+                          "in the laboratory repose test they give rrlinear's angle within {:.1f} degrees",
+                          scenario.bullet->friction, scenario.bullet->rolling, scenario.bullet->error_deg)
+            : "engine impulse: Bullet's friction and rolling friction were set by hand; nothing is known of "
+              "how "
+              "near the result is to rrlinear's");
   return result;
 }
 

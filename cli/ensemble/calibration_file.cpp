@@ -2,9 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "analysis/emulator.h"
+#include "sim/material/grading.h"
 #include "sim/scene/scenario_values.h"
 
 namespace scree {
@@ -13,6 +17,37 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostParameters = 3;  // the posterior is a grid
+
+constexpr std::array<int, 4> kCurveDiameters{10, 50, 80, 90};  // D_x that stand for a passing curve
+
+/// A measured passing curve of a section as targets for some of its diameters: a passing share that is
+/// uncertain by u makes D_x uncertain by half of D_(x+u) - D_(x-u).
+void read_passing_curve(const YamlNode& item, const fs::path& file, const fs::path& scenario,
+                        CalibrationSpec& spec, FileReader& reader) {
+  const YamlEntry *curve = item.find("passing_curve"), *section = item.find("section"),
+                  *uncertainty = item.find("uncertainty");
+  reader.allow(item, {"passing_curve", "section", "uncertainty", "scenario"},
+               " in a target with a passing curve");
+  if (section == nullptr || uncertainty == nullptr)
+    return reader.fail(item.place, "targets: passing_curve, section and uncertainty are needed");
+  const std::string path = reader.scalar(curve->value, "passing_curve").value_or("");
+  const std::string name = reader.scalar(section->value, "section").value_or("");
+  const double u = reader.number(uncertainty->value, "uncertainty").value_or(0.03);
+  if (!(u > 0 && u < 0.1))
+    return reader.fail(uncertainty->value.place,
+                       "uncertainty: of a passing share; more than 0, below 0.1 (3 points are 0.03)");
+  try {
+    const Grading grading = read_grading((file.parent_path() / path).lexically_normal());
+    for (const int percent : kCurveDiameters) {
+      const double x = percent / 100.0;
+      const double spread =
+          0.5 * (grading.diameter(std::min(1.0, x + u)) - grading.diameter(std::max(0.0, x - u)));
+      spec.targets.push_back({fmt::format("d{}_m_{}", percent, name), grading.diameter(x), spread, scenario});
+    }
+  } catch (const std::runtime_error& error) {
+    reader.fail(curve->value.place, std::string("passing_curve: ") + error.what());
+  }
+}
 
 void read_targets(const YamlNode& root, const fs::path& file, const std::optional<fs::path>& scenario,
                   CalibrationSpec& spec, FileReader& reader) {
@@ -24,8 +59,18 @@ void read_targets(const YamlNode& root, const fs::path& file, const std::optiona
       reader.fail(item.place, "targets: a map is expected, found " + found(item));
       continue;
     }
-    reader.allow(item, {"output", "value", "uncertainty", "scenario"}, " in a target");
     CalibrationSpec::Target target;
+    if (item.find("scenario") != nullptr)
+      target.scenario = scenario_at(item, file, true, reader).value_or("");
+    else if (scenario)
+      target.scenario = *scenario;
+    else
+      reader.fail(item.place, "targets: a scenario is needed, here or for all at the top");
+    if (item.find("passing_curve") != nullptr) {
+      read_passing_curve(item, file, target.scenario, spec, reader);
+      continue;
+    }
+    reader.allow(item, {"output", "value", "uncertainty", "scenario"}, " in a target");
     const YamlEntry *output = item.find("output"), *value = item.find("value"),
                     *uncertainty = item.find("uncertainty");
     if (output == nullptr || value == nullptr || uncertainty == nullptr) {
@@ -37,12 +82,6 @@ void read_targets(const YamlNode& root, const fs::path& file, const std::optiona
     target.uncertainty = reader.number(uncertainty->value, "uncertainty").value_or(1);
     if (!(target.uncertainty > 0))
       reader.fail(uncertainty->value.place, "uncertainty: must be above 0 (a standard deviation)");
-    if (item.find("scenario") != nullptr)
-      target.scenario = scenario_at(item, file, true, reader).value_or("");
-    else if (scenario)
-      target.scenario = *scenario;
-    else
-      reader.fail(item.place, "targets: a scenario is needed, here or for all at the top");
     spec.targets.push_back(std::move(target));
   }
 }

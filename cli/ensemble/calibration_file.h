@@ -43,6 +43,7 @@ struct CalibrationSpecResult {
 ///   ties: {material.mu_r: material.mu}
 ///   targets:
 ///     - {output: angle_deg, value: 25.4, uncertainty: 1.5, scenario: (default: the one above)}
+///     - {passing_curve: measured.csv, section: S6, uncertainty: 0.03}   D10, D50, D80, D90 of the section
 ///   method: {type: grid, points: 4} or {type: bayes, first: 5, most: 24, enough: 0.05}
 CalibrationSpecResult load_calibration(const std::filesystem::path& file);
 

@@ -57,7 +57,10 @@ RunRequest run_request(Scenario scenario, std::uint64_t seed, const std::string&
     replace_by_content(lift->container_mesh);
   }
   for (ToolSpec& tool : scenario.tools) replace_by_content(tool.mesh);
-  request.key = hash_of("scree " + version + "\n" + write_scenario(scenario, asset_dir));
+  std::string bullet;  // "equivalent" in the scenario stands for these
+  if (scenario.bullet)
+    bullet = fmt::format("bullet {} {}\n", scenario.bullet->friction, scenario.bullet->rolling);
+  request.key = hash_of("scree " + version + "\n" + bullet + write_scenario(scenario, asset_dir));
   return request;
 }
 

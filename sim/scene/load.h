@@ -22,7 +22,8 @@ struct Load {
 
 /// Puts the diameters (m, largest first) at random places, none overlapping another or the region's sides.
 /// When a sphere finds no place in 400 tries the region grows in height by 2 % and is filled anew, so that
-/// every height holds the same mix. The random stream is that of (seed, dump). Throws std::invalid_argument when a sphere is wider than the region.
+/// every height holds the same mix. The random stream is that of (seed, dump). Throws std::invalid_argument
+/// when a sphere is wider than the region.
 Load fill_region(const LoadRegion& region, const std::vector<double>& diameters, std::uint64_t seed,
                  std::uint64_t dump);
 

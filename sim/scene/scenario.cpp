@@ -139,6 +139,7 @@ ScenarioResult load_scenario(const fs::path& file, const std::vector<std::string
   if (root) {
     read_keys(*root, result.scenario, asset_dir, chain.incomplete, notes);
     check_scenario(result.scenario, asset_dir, notes, result.warnings);
+    find_bullet_settings(result.scenario, asset_dir, notes);
   }
   put_in_order(notes.errors, chain.files);
   result.errors = std::move(notes.errors);

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "sim/material/equivalence.h"
 #include "sim/material/grading.h"
 #include "sim/material/material.h"
 #include "sim/material/vector.h"
@@ -106,6 +107,8 @@ struct Numerics {
   double wake_tolerance = 0.1;    ///< change of a contact force that wakes, of weight + mean contact force
   double impulse_time_step = 1.0e-3;  ///< s (impulse)
   int impulse_iterations = 20;
+  std::optional<double> impulse_friction;  ///< Bullet's; none: the equivalent of rrlinear's
+  std::optional<double> impulse_rolling;   ///< Bullet's over the effective radius; none: as above
 };
 
 /// A row of `compare`: against which of the reference cases in assets/reference the result is held.
@@ -130,7 +133,9 @@ struct Scenario {
   Numerics numerics;
   OutputSpec output;
   std::vector<std::string> compare;  ///< names of reference cases in assets/reference/results.csv
-  std::string resolved_yaml;         ///< the whole scenario with every default filled in
+  /// engine impulse: what Bullet gets for material.mu and material.mu_r.
+  std::optional<Equivalence::Settings> bullet;
+  std::string resolved_yaml;  ///< the whole scenario with every default filled in
 };
 
 /// Name of the experiment's type in a file: end_dump, repose_lift, drop_test.

@@ -210,4 +210,32 @@ void check_scenario(const Scenario& scenario, const fs::path& asset_dir, ReadNot
   Checks(scenario, asset_dir, notes, warnings).all();
 }
 
+void find_bullet_settings(Scenario& s, const fs::path& asset_dir, ReadNotes& notes) {
+  const auto &friction = s.numerics.impulse_friction, &rolling = s.numerics.impulse_rolling;
+  if (s.engine != EngineKind::impulse) return;
+  if (!notes.good({&s.material.mu, &s.material.mu_r, &s.material.local_damping, &friction, &rolling})) return;
+  if (friction && rolling) {
+    s.bullet = Equivalence::Settings{*friction, *rolling, 0};
+    return;
+  }
+  const char* way_out = "set numerics.impulse_friction and numerics.impulse_rolling, or take engine rrlinear";
+  const fs::path file = asset_dir / "impulse" / "equivalent.csv";
+  try {
+    const Equivalence table = Equivalence::read(file);
+    s.bullet = table.at(s.material.mu, s.material.mu_r, s.material.local_damping);
+    if (!s.bullet)
+      report(notes.errors, notes.places.at(&s.material.mu),
+             fmt::format(
+                 "engine impulse: no settings of Bullet are known that are equivalent to mu {:g}, mu_r {:g}, "
+                 "local_damping {:g}; known: {}; {}",
+                 s.material.mu, s.material.mu_r, s.material.local_damping, table.range(), way_out));
+  } catch (const std::runtime_error& error) {
+    report(notes.errors, notes.places.at(&s.material.mu),
+           fmt::format("engine impulse: {}; {}", error.what(), way_out));
+  }
+  if (!s.bullet) return;
+  s.bullet->friction = friction.value_or(s.bullet->friction);
+  s.bullet->rolling = rolling.value_or(s.bullet->rolling);
+}
+
 }  // namespace scree

@@ -4,6 +4,7 @@ namespace scree {
 namespace {
 
 constexpr Range kFriction{0, 5};
+constexpr std::string_view kRock = "rock", kEquivalent = "equivalent";
 constexpr Range kScale{1e-6, 1e6};
 constexpr Range kAnywhere{-1e4, 1e4};
 constexpr std::string_view kMetre = "m", kSecond = "s", kDegree = "degrees", kNone = "";
@@ -74,8 +75,8 @@ Fields keys(TruckSpec& t) {
       {"hoist_rate_deg_per_s", Number{&t.hoist_rate_deg, "degrees/s", {0.1, 90}},
        "Speed of the tilt (hoist only)."},
       {"settle_s", Number{&t.settle_s, kSecond, {0, 60}}, "Time the load settles behind the closed gate."},
-      {"mu", RockOr{&t.mu, kFriction}, kMuDoc},
-      {"mu_r", RockOr{&t.mu_r, kFriction}, kMuRDoc},
+      {"mu", NumberOr{&t.mu, kFriction, kRock}, kMuDoc},
+      {"mu_r", NumberOr{&t.mu_r, kFriction, kRock}, kMuRDoc},
   };
 }
 
@@ -96,16 +97,16 @@ Fields container_keys(ReposeLift& r) {
       {"mesh_scale", Number{&r.scale, "m", kScale}, kScaleDoc},
       {"diameter_m", Number{&r.diameter, kMetre, {0.01, 50}}, "Inner diameter."},
       {"height_m", Number{&r.height, kMetre, {0.01, 50}}, "Inner height."},
-      {"mu", RockOr{&r.container_mu, kFriction}, kMuDoc},
-      {"mu_r", RockOr{&r.container_mu_r, kFriction}, kMuRDoc},
+      {"mu", NumberOr{&r.container_mu, kFriction, kRock}, kMuDoc},
+      {"mu_r", NumberOr{&r.container_mu_r, kFriction, kRock}, kMuRDoc},
   };
 }
 
 Fields floor_keys(ReposeLift& r) {
   return {
       {"radius_m", Number{&r.floor_radius, kMetre, {0.01, 500}}, "Half width of the floor."},
-      {"mu", RockOr{&r.floor_mu, kFriction}, kMuDoc},
-      {"mu_r", RockOr{&r.floor_mu_r, kFriction}, kMuRDoc},
+      {"mu", NumberOr{&r.floor_mu, kFriction, kRock}, kMuDoc},
+      {"mu_r", NumberOr{&r.floor_mu_r, kFriction, kRock}, kMuRDoc},
       {"base_layer", base_layer(r.base_layer), "Fixed balls on the floor: none, homogeneous, or mixed."},
   };
 }
@@ -141,8 +142,8 @@ Fields keys(ToolSpec& t) {
       {"name", Text{&t.name, {1, 100}}, "Name of the tool, of its own.", true},
       {"mesh", MeshFile{&t.mesh, "", &t.scale}, "Mesh of the tool: STL, OBJ, PLY, glTF or GLB.", true},
       {"mesh_scale", Number{&t.scale, "m", kScale}, kScaleDoc},
-      {"mu", RockOr{&t.mu, kFriction}, kMuDoc},
-      {"mu_r", RockOr{&t.mu_r, kFriction}, kMuRDoc},
+      {"mu", NumberOr{&t.mu, kFriction, kRock}, kMuDoc},
+      {"mu_r", NumberOr{&t.mu_r, kFriction, kRock}, kMuRDoc},
       {"keyframes",
        GroupList{[&t](std::size_t n) { t.keyframes.assign(n, {}); },
                  [&t] { return t.keyframes.size(); },
@@ -175,6 +176,10 @@ Fields keys(Numerics& n) {
        "Time step of the engine impulse."},
       {"impulse_iterations", Integer{&n.impulse_iterations, {1, 1000}},
        "Solver iterations of the engine impulse."},
+      {"impulse_friction", NumberOr{&n.impulse_friction, kFriction, kEquivalent},
+       "Bullet's friction coefficient (engine impulse); equivalent: the one that gives rrlinear's angles."},
+      {"impulse_rolling", NumberOr{&n.impulse_rolling, kFriction, kEquivalent},
+       "Bullet's rolling friction over the effective radius (engine impulse); equivalent: as above."},
   };
 }
 
@@ -218,7 +223,7 @@ Fields scenario_keys(Scenario& s) {
        "Another scenario file, relative to this one, whose keys hold where this one does not give them."},
       {"title", Text{&s.title, {0, 200}}, "Title for reports."},
       {"engine", choice(s.engine, {"rrlinear", "impulse"}),
-       "rrlinear: soft contacts with rolling resistance; impulse: rigid contacts, faster and coarser."},
+       "rrlinear: soft contacts with rolling resistance; impulse: rigid contacts, coarser."},
       {"seeds", Seeds{&s.seeds, {1, 1000}}, "Seeds of the random streams, one run each; distinct."},
       {"material", Group{[&s] { return keys(s.material); }}, "The rock and the contact law."},
       {"grading", GradingFile{&s.grading_file}, "Name of a grading in assets/gradings, or path of a CSV.",

@@ -37,10 +37,11 @@ struct Number {
   Range range;
   double factor = 1;  ///< value in the struct = factor * value in the file
 };
-/// A number, or the word `rock`: the rock's own value.
-struct RockOr {
+/// A number, or a word for none: `rock`, the rock's own value.
+struct NumberOr {
   std::optional<double>* value;
   Range range;
+  std::string_view word;
 };
 struct Integer {
   int* value;
@@ -114,7 +115,7 @@ struct OneOf {
 /// `extends`: resolved before the table is used, kept here for the list of keys and the schema.
 struct Extends {};
 
-using Target = std::variant<Number, RockOr, Integer, Boolean, Text, Choice, MeshFile, GradingFile, Vector,
+using Target = std::variant<Number, NumberOr, Integer, Boolean, Text, Choice, MeshFile, GradingFile, Vector,
                             Numbers, Integers, Seeds, Texts, Group, GroupList, OneOf, Extends>;
 
 struct Field {

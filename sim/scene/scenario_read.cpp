@@ -252,8 +252,8 @@ class Reader {
   void read(const Number& t, const YamlNode& node, const std::string& path) {
     if (const auto value = number(node, t.unit, t.range, t.value, path)) *t.value = *value * t.factor;
   }
-  void read(const RockOr& t, const YamlNode& node, const std::string& path) {
-    if (node.kind == YamlKind::scalar && node.text == "rock")
+  void read(const NumberOr& t, const YamlNode& node, const std::string& path) {
+    if (node.kind == YamlKind::scalar && node.text == t.word)
       t.value->reset();
     else if (const auto value = number(node, "", t.range, t.value, path))
       *t.value = *value;

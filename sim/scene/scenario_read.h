@@ -39,6 +39,9 @@ void read_keys(const YamlNode& root, Scenario& scenario, const std::filesystem::
 void check_scenario(const Scenario& scenario, const std::filesystem::path& asset_dir, ReadNotes& notes,
                     std::vector<std::string>& warnings);
 
+/// Sets `bullet` of a scenario with engine impulse: the settings given, else the equivalent ones.
+void find_bullet_settings(Scenario& scenario, const std::filesystem::path& asset_dir, ReadNotes& notes);
+
 /// The whole scenario as YAML (scenario_write.cpp).
 std::string write_scenario(Scenario scenario, const std::filesystem::path& asset_dir);
 

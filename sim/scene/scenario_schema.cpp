@@ -44,9 +44,9 @@ struct TargetSchema {
   Json operator()(const Number& t) const {
     return with_default(with_unit(ranged("number", t.range), t.unit), plain(*t.value / t.factor));
   }
-  Json operator()(const RockOr& t) const {
-    return {{"anyOf", Json::array({ranged("number", t.range), Json{{"const", "rock"}}})},
-            {"default", "rock"}};
+  Json operator()(const NumberOr& t) const {
+    return {{"anyOf", Json::array({ranged("number", t.range), Json{{"const", t.word}}})},
+            {"default", t.word}};
   }
   Json operator()(const Integer& t) const { return with_default(ranged("integer", t.range), *t.value); }
   Json operator()(const Boolean& t) const { return with_default({{"type", "boolean"}}, *t.value); }

@@ -76,8 +76,8 @@ class Writer {
   void write(const Number& t, std::string_view name, int indent) {
     line(indent, name, scaled_text(*t.value, t.factor));
   }
-  void write(const RockOr& t, std::string_view name, int indent) {
-    line(indent, name, *t.value ? number_text(**t.value) : "rock");
+  void write(const NumberOr& t, std::string_view name, int indent) {
+    line(indent, name, *t.value ? number_text(**t.value) : std::string(t.word));
   }
   void write(const Integer& t, std::string_view name, int indent) {
     line(indent, name, std::to_string(*t.value));

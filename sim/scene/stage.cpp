@@ -22,6 +22,10 @@ Stage::Stage(const Scenario& scenario, std::uint64_t seed, int threads, const Ru
     : scenario_(scenario), seed_(seed), hooks_(hooks) {
   WorldSettings settings;
   settings.material = scenario.material;
+  if (scenario.engine == EngineKind::impulse) {
+    settings.material.mu = scenario.bullet.value().friction;
+    settings.material.mu_r = scenario.bullet.value().rolling;
+  }
   settings.domain_low = domain_low;
   settings.domain_high = domain_high;
   settings.time_step_safety = scenario.numerics.time_step_safety;
@@ -35,7 +39,14 @@ Stage::Stage(const Scenario& scenario, std::uint64_t seed, int threads, const Ru
 }
 
 Surface Stage::surface(const std::optional<double>& mu, const std::optional<double>& mu_r) const {
-  return {mu.value_or(scenario_.material.mu), mu_r.value_or(scenario_.material.mu_r)};
+  const Material& rock = scenario_.material;
+  if (!scenario_.bullet) return {mu.value_or(rock.mu), mu_r.value_or(rock.mu_r)};
+  // A surface keeps its ratio to the rock.
+  const auto ratio = [](const std::optional<double>& own, double of_rock) {
+    return own && of_rock > 0 ? *own / of_rock : 1.0;
+  };
+  return {ratio(mu, rock.mu) * scenario_.bullet->friction,
+          ratio(mu_r, rock.mu_r) * scenario_.bullet->rolling};
 }
 
 TriangleMesh Stage::read(const std::filesystem::path& mesh, double scale) const {

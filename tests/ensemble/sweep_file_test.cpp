@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "cli/ensemble/calibration_file.h"
+#include "cli/ensemble/equivalence_fit.h"
 #include "cli/ensemble/run_request.h"
 #include "scree_version.h"
 
@@ -126,11 +128,37 @@ TEST(EnsembleFiles, ThoseOfTheProjectLoad) {
     ++files;
   }
   for (const auto& item : fs::directory_iterator(fs::path(SCREE_SOURCE_DIR) / "scenarios" / "calibrations")) {
-    const CalibrationSpecResult r = load_calibration(item.path());
-    EXPECT_TRUE(r.errors.empty()) << r.errors.front().text();
+    const std::vector<ScenarioError> errors = is_equivalence(item.path())
+                                                  ? load_equivalence(item.path()).errors
+                                                  : load_calibration(item.path()).errors;
+    EXPECT_TRUE(errors.empty()) << errors.front().text();
     ++files;
   }
   EXPECT_GE(files, 4);
+}
+
+TEST_F(SweepFile, PassingCurveIsATargetForItsDiameters) {
+  std::ofstream(folder / "curve.csv") << "diameter_mm,passing_pct\n100,0\n1000,100\n";
+  const fs::path file = folder / "calibration.yaml";
+  const auto load = [&](const std::string& target) {
+    std::ofstream(file)
+        << "scenario: " << SCREE_SOURCE_DIR
+        << "/scenarios/quick_dump.yaml\nseeds: [1]\nparameters: {material.mu: {from: 0.1, to: 0.4}}\n"
+           "targets: [{passing_curve: curve.csv, section: S6"
+        << target << "}]\n";
+    return load_calibration(file);
+  };
+  const CalibrationSpecResult r = load(", uncertainty: 0.05");
+  ASSERT_TRUE(r.errors.empty()) << r.errors.front().text();
+  ASSERT_EQ(r.spec.targets.size(), 4u);
+  EXPECT_EQ(r.spec.targets[1].output, "d50_m_S6");
+  // Linear in the logarithm: D_x = 0.1 m * 10^x.
+  EXPECT_NEAR(r.spec.targets[1].value, 0.1 * std::sqrt(10.0), 1e-9);
+  EXPECT_NEAR(r.spec.targets[1].uncertainty, 0.05 * (std::pow(10, 0.55) - std::pow(10, 0.45)), 1e-9);
+  EXPECT_THAT(load("").errors.front().text(), HasSubstr("passing_curve, section and uncertainty are needed"));
+  EXPECT_THAT(load(", uncertainty: 3").errors.front().text(), HasSubstr("uncertainty: of a passing share"));
+  fs::remove(folder / "curve.csv");
+  EXPECT_THAT(load(", uncertainty: 0.05").errors.front().text(), HasSubstr("passing_curve: "));
 }
 
 TEST_F(SweepFile, KeyIsThatOfTheNumbersAlone) {

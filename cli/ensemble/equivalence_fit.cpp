@@ -1,0 +1,250 @@
+#include "cli/ensemble/equivalence_fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/emulator.h"
+#include "analysis/results.h"
+#include "cli/ensemble/design.h"
+#include "sim/scene/scenario_values.h"
+
+namespace scree {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr int kRaySteps = 400;  // looks along the ray of a node
+
+std::vector<std::string> overrides(const EquivalenceSpec& spec, double local_damping) {
+  std::vector<std::string> list = spec.fixed;
+  list.push_back(fmt::format("material.local_damping={:.6g}", local_damping));
+  return list;
+}
+
+EquivalenceRun rrlinear_run(const EquivalenceSpec& spec, const EquivalenceNode& node, std::uint64_t seed) {
+  EquivalenceRun run{overrides(spec, node.local_damping), seed};
+  run.overrides.push_back("engine=rrlinear");
+  run.overrides.push_back(fmt::format("material.mu={:.6g}", node.mu));
+  run.overrides.push_back(fmt::format("material.mu_r={:.6g}", node.mu_r));
+  return run;
+}
+
+EquivalenceRun bullet_run(const EquivalenceSpec& spec, double local_damping, double friction, double rolling,
+                          std::uint64_t seed) {
+  EquivalenceRun run{overrides(spec, local_damping), seed};
+  run.overrides.push_back("engine=impulse");
+  run.overrides.push_back(fmt::format("numerics.impulse_friction={:.6g}", friction));
+  run.overrides.push_back(fmt::format("numerics.impulse_rolling={:.6g}", rolling));
+  return run;
+}
+
+/// Bullet's angle over its two coefficients, at one local damping.
+class BulletAngle {
+ public:
+  explicit BulletAngle(const EquivalenceSpec& spec) : spec_(spec) {}
+
+  void add(double friction, double rolling, double angle) {
+    if (!std::isfinite(angle)) return;
+    at_.push_back({share(spec_.friction, friction), share(spec_.rolling, rolling)});
+    angles_.push_back(angle);
+  }
+  void learn() {
+    if (angles_.size() < static_cast<std::size_t>(Emulator::kLeastPoints))
+      throw std::runtime_error("too few simulations with engine impulse gave an angle");
+    Eigen::MatrixXd x(static_cast<Eigen::Index>(at_.size()), 2);
+    for (std::size_t k = 0; k < at_.size(); ++k) x.row(static_cast<Eigen::Index>(k)) << at_[k][0], at_[k][1];
+    emulator_.emplace(
+        x, Eigen::Map<const Eigen::VectorXd>(angles_.data(), static_cast<Eigen::Index>(angles_.size())));
+  }
+
+  /// Sets the node's coefficients to those on its ray that give `angle` and are nearest to (mu, mu_r); false
+  /// if none in the range searched do.
+  bool solve(EquivalenceNode& node, double angle) const {
+    double best = nan, before_factor = nan, before = nan;
+    for (int k = 0; k <= kRaySteps; ++k) {
+      const double factor = 0.2 * std::pow(25.0, static_cast<double>(k) / kRaySteps);  // 0.2 to 5
+      const double friction = factor * node.mu, rolling = factor * node.mu_r;
+      const bool inside = friction >= spec_.friction.from && friction <= spec_.friction.to &&
+                          rolling >= spec_.rolling.from && rolling <= spec_.rolling.to;
+      const double here = inside ? at(friction, rolling) - angle : nan;
+      if (before * here <= 0) {
+        const double root = before_factor + (factor - before_factor) * before / (before - here);
+        if (!(std::abs(std::log(root)) > std::abs(std::log(best)))) best = root;
+      }
+      before_factor = factor;
+      before = here;
+    }
+    if (!std::isfinite(best)) return false;
+    node.friction = best * node.mu;
+    node.rolling = best * node.mu_r;
+    return true;
+  }
+
+ private:
+  static double share(const FileReader::Span& span, double value) {
+    return (value - span.from) / (span.to - span.from);
+  }
+  double at(double friction, double rolling) const {
+    return emulator_->at(Eigen::Vector2d(share(spec_.friction, friction), share(spec_.rolling, rolling)))
+        .mean;
+  }
+
+  const EquivalenceSpec& spec_;
+  std::vector<std::array<double, 2>> at_;
+  std::vector<double> angles_;
+  std::optional<Emulator> emulator_;
+};
+
+double mean_of(const std::vector<double>& values) {
+  std::vector<double> finite;
+  for (const double value : values)
+    if (std::isfinite(value)) finite.push_back(value);
+  return finite.empty() ? nan : mean_std(finite).mean;
+}
+
+std::vector<double> rising(const YamlNode& nodes, const char* key, double otherwise, FileReader& reader) {
+  const YamlEntry* entry = nodes.find(key);
+  if (entry == nullptr) {
+    if (std::isnan(otherwise)) reader.fail(nodes.place, fmt::format("nodes: {} is missing", key));
+    return {otherwise};
+  }
+  std::vector<double> values;
+  if (entry->value.kind != YamlKind::sequence || entry->value.items.empty())
+    reader.fail(entry->value.place, fmt::format("{}: a list of numbers is expected", key));
+  else
+    for (const YamlNode& item : entry->value.items)
+      if (const auto value = reader.number(item, key)) values.push_back(*value);
+  if (!std::is_sorted(values.begin(), values.end(), std::less_equal<>()))
+    reader.fail(entry->value.place, fmt::format("{}: the numbers must rise", key));
+  return values;
+}
+
+}  // namespace
+
+bool is_equivalence(const fs::path& file) {
+  std::vector<ScenarioError> errors;
+  const auto root = read_yaml(file, errors);
+  return root && root->find("equivalent") != nullptr;
+}
+
+EquivalenceSpecResult load_equivalence(const fs::path& file) {
+  EquivalenceSpecResult result;
+  EquivalenceSpec& spec = result.spec;
+  FileReader reader(result.errors);
+  spec.name = file.stem().string();
+  const auto root = read_yaml(file, result.errors);
+  if (!root) return result;
+  reader.allow(*root, {"scenario", "seeds", "set", "equivalent"}, " beside equivalent");
+  if (const auto scenario = scenario_at(*root, file, true, reader)) spec.scenario = *scenario;
+  spec.fixed = read_variation(*root, {}, reader).fixed;
+  if (const YamlNode* list = reader.list_at(*root, "seeds", true, "a list of integers"))
+    spec.seeds = reader.seeds(*list);
+  const YamlNode* part = reader.map_at(*root, "equivalent", true, "a map");
+  if (part == nullptr) return result;
+  reader.allow(*part, {"output", "nodes", "search", "points", "rounds", "within"}, " in equivalent");
+  const YamlEntry* output = part->find("output");
+  spec.output = output == nullptr ? "angle_deg" : reader.scalar(output->value, "output").value_or("");
+  if (const YamlNode* nodes = reader.map_at(*part, "nodes", true, "a map of lists of numbers")) {
+    reader.allow(*nodes, {"material.mu", "material.mu_r", "material.local_damping"}, " in nodes");
+    spec.mu = rising(*nodes, "material.mu", nan, reader);
+    spec.mu_r = rising(*nodes, "material.mu_r", nan, reader);
+    spec.local_damping = rising(*nodes, "material.local_damping", 0.4, reader);
+  }
+  if (const YamlNode* search =
+          reader.map_at(*part, "search", true, "a map from keys to {from: .., to: ..}")) {
+    const std::vector<FileReader::Span> spans = reader.spans(*search);
+    for (const FileReader::Span& span : spans) {
+      if (span.key == "numerics.impulse_friction") spec.friction = span;
+      if (span.key == "numerics.impulse_rolling") spec.rolling = span;
+    }
+    if (spans.size() != 2 || spec.friction.key.empty() || spec.rolling.key.empty())
+      reader.fail(search->place, "search: numerics.impulse_friction and numerics.impulse_rolling are needed");
+  }
+  const auto integer = [&](const char* key, int& value, int least, int most) {
+    if (const YamlEntry* entry = part->find(key))
+      value = static_cast<int>(
+          reader.whole(entry->value, key, least, most).value_or(static_cast<std::uint64_t>(value)));
+  };
+  integer("points", spec.points, static_cast<int>(Emulator::kLeastPoints), 200);
+  integer("rounds", spec.rounds, 1, 20);
+  if (const YamlEntry* within = part->find("within"))
+    spec.within = reader.number(within->value, "within").value_or(spec.within);
+  return result;
+}
+
+std::vector<EquivalenceNode> fit_equivalence(const EquivalenceSpec& spec,
+                                             const EquivalenceSimulator& simulate) {
+  std::vector<EquivalenceNode> all;
+  for (const double local_damping : spec.local_damping) {
+    std::vector<EquivalenceNode> nodes;
+    std::vector<EquivalenceRun> runs;
+    for (const double mu : spec.mu)
+      for (const double mu_r : spec.mu_r) {
+        nodes.push_back({mu, mu_r, local_damping});
+        for (const std::uint64_t seed : spec.seeds) runs.push_back(rrlinear_run(spec, nodes.back(), seed));
+      }
+    std::vector<std::array<double, 2>> design;
+    for (const auto& unit : sobol(spec.points, 2)) {
+      design.push_back({spec.friction.from + unit[0] * (spec.friction.to - spec.friction.from),
+                        spec.rolling.from + unit[1] * (spec.rolling.to - spec.rolling.from)});
+      runs.push_back(bullet_run(spec, local_damping, design.back()[0], design.back()[1],
+                                spec.seeds[(design.size() - 1) % spec.seeds.size()]));
+    }
+    const std::vector<double> first = simulate(runs);
+    const std::size_t seeds = spec.seeds.size();
+    const auto of_seeds = [&](const std::vector<double>& values, std::size_t k) {
+      const auto begin = values.begin() + static_cast<std::ptrdiff_t>(k * seeds);
+      return mean_of({begin, begin + static_cast<std::ptrdiff_t>(seeds)});
+    };
+    for (std::size_t k = 0; k < nodes.size(); ++k) nodes[k].angle_rrlinear = of_seeds(first, k);
+    BulletAngle bullet(spec);
+    for (std::size_t k = 0; k < design.size(); ++k)
+      bullet.add(design[k][0], design[k][1], first[nodes.size() * seeds + k]);
+
+    for (int round = 0; round < spec.rounds; ++round) {
+      bullet.learn();
+      std::vector<EquivalenceNode*> asked;
+      runs.clear();
+      for (EquivalenceNode& node : nodes) {
+        if (node.found || !std::isfinite(node.angle_rrlinear) || !bullet.solve(node, node.angle_rrlinear))
+          continue;
+        asked.push_back(&node);
+        for (const std::uint64_t seed : spec.seeds)
+          runs.push_back(bullet_run(spec, local_damping, node.friction, node.rolling, seed));
+      }
+      if (asked.empty()) break;
+      const std::vector<double> checks = simulate(runs);
+      for (std::size_t k = 0; k < asked.size(); ++k) {
+        EquivalenceNode& node = *asked[k];
+        for (std::size_t s = 0; s < seeds; ++s)
+          bullet.add(node.friction, node.rolling, checks[k * seeds + s]);
+        node.angle_impulse = of_seeds(checks, k);
+        node.found = std::abs(node.angle_impulse - node.angle_rrlinear) <= spec.within;
+      }
+    }
+    all.insert(all.end(), nodes.begin(), nodes.end());
+  }
+  return all;
+}
+
+std::string equivalence_csv(const std::vector<EquivalenceNode>& nodes,
+                            const std::vector<std::string>& comment) {
+  std::string text;
+  for (const std::string& line : comment) text += "# " + line + "\n";
+  text += "mu,mu_r,local_damping,friction,rolling,angle_rrlinear_deg,angle_impulse_deg\n";
+  for (const EquivalenceNode& node : nodes) {
+    text += fmt::format("{:g},{:g},{:g},", node.mu, node.mu_r, node.local_damping);
+    text += node.found ? fmt::format("{:.4f},{:.4f},{:.2f},{:.2f}\n", node.friction, node.rolling,
+                                     node.angle_rrlinear, node.angle_impulse)
+                       : fmt::format(",,{},\n", std::isfinite(node.angle_rrlinear)
+                                                    ? fmt::format("{:.2f}", node.angle_rrlinear)
+                                                    : "");
+  }
+  return text;
+}
+
+}  // namespace scree
