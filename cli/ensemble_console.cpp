@@ -17,9 +17,9 @@ namespace {
 constexpr double kTerminalInterval = 0.5, kPlainInterval = 30;  // s between lines of progress
 }
 
-std::unique_ptr<scree::ResultsStore> open_store(const fs::path& named, bool must_exist) {
+std::unique_ptr<scree::ResultsStore> open_store(const fs::path& named, bool only_look) {
   const fs::path file = named.empty() ? fs::path("runs") / "store.sqlite" : named;
-  if (must_exist && !fs::exists(file)) {
+  if (only_look && !fs::exists(file)) {
     fmt::print(stderr, "{}: no such store; nothing has been run yet, or another --store is meant\n",
                file.string());
     return nullptr;
@@ -27,7 +27,8 @@ std::unique_ptr<scree::ResultsStore> open_store(const fs::path& named, bool must
   std::error_code error;
   if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
   try {
-    return std::make_unique<scree::ResultsStore>(file);
+    using Access = scree::ResultsStore::Access;
+    return std::make_unique<scree::ResultsStore>(file, only_look ? Access::look : Access::change);
   } catch (const std::runtime_error& refused) {
     fmt::print(stderr, "{}\n", refused.what());
     return nullptr;

@@ -8,9 +8,9 @@
 
 #include "cli/ensemble/ensemble.h"
 
-/// The store named, or runs/store.sqlite; none, with a message, if it cannot be opened. `must_exist`: it is
-/// not made.
-std::unique_ptr<scree::ResultsStore> open_store(const std::filesystem::path& named, bool must_exist);
+/// The store named, or runs/store.sqlite; none, with a message, if it cannot be opened. `only_look`: it is
+/// not made, and needs no right to write.
+std::unique_ptr<scree::ResultsStore> open_store(const std::filesystem::path& named, bool only_look);
 
 /// Brings the runs into the store by `jobs` processes (0: as many as cores), with progress on stderr. Ctrl-C
 /// ends it.

@@ -147,12 +147,16 @@ class Transaction {
 
 }  // namespace
 
-ResultsStore::ResultsStore(const std::filesystem::path& file) : file_(file), owner_(this_program()) {
+ResultsStore::ResultsStore(const std::filesystem::path& file, Access access)
+    : file_(file), owner_(this_program()) {
   try {
-    if (sqlite3_open(file.c_str(), &db_) != SQLITE_OK)
+    const int flags =
+        access == Access::look ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+    if (sqlite3_open_v2(file.c_str(), &db_, flags, nullptr) != SQLITE_OK)
       throw std::runtime_error(fmt::format("{}: {}", file.string(), sqlite3_errmsg(db_)));
     sqlite3_busy_timeout(db_, kBusyTimeout);
-    Transaction transaction(db_);
+    std::optional<Transaction> transaction;
+    if (access == Access::change) transaction.emplace(db_);
     const auto number = [&](const char* sql) {
       Statement statement(db_, sql);
       statement.step();
@@ -161,11 +165,12 @@ ResultsStore::ResultsStore(const std::filesystem::path& file) : file_(file), own
     const int format = number("PRAGMA user_version");
     if (format > kFormat)
       throw std::runtime_error(fmt::format("{}: was written by a newer scree", file.string()));
-    if (format == 0 && number("SELECT count(*) FROM sqlite_master") > 0)
+    if (format == 0 && (access == Access::look || number("SELECT count(*) FROM sqlite_master") > 0))
       throw std::runtime_error(fmt::format("{}: is a database, but not a store of scree", file.string()));
+    if (!transaction) return;
     execute(kTables);
     execute(fmt::format("PRAGMA user_version = {}", kFormat).c_str());
-    transaction.commit();
+    transaction->commit();
   } catch (...) {
     sqlite3_close(db_);
     throw;

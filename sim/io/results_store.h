@@ -49,9 +49,11 @@ class ResultsStore {
  public:
   static constexpr double kLostAfter = 600;  ///< s without a sign of life of another machine's claim
 
-  /// Opens the store, or makes a new one. Throws std::runtime_error: not writable, not a store, of a newer
-  /// scree.
-  explicit ResultsStore(const std::filesystem::path& file);
+  enum class Access { look, change };
+
+  /// Opens the store; to change it, makes a new one if there is none, and to look at it needs no right to
+  /// write. Throws std::runtime_error: not there, not writable, not a store, of a newer scree.
+  explicit ResultsStore(const std::filesystem::path& file, Access access = Access::change);
   ~ResultsStore();
   ResultsStore(const ResultsStore&) = delete;
   ResultsStore& operator=(const ResultsStore&) = delete;

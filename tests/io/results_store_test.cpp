@@ -113,6 +113,19 @@ TEST_F(Store, OtherMachinesClaimIsLostAfterAWhileOnly) {
   sqlite3_close(db);
 }
 
+TEST_F(Store, LookingNeedsNoRightToWrite) {
+  EXPECT_THROW(ResultsStore(file, ResultsStore::Access::look), std::runtime_error);
+  EXPECT_FALSE(fs::exists(file));
+  {
+    ResultsStore store(file);
+    EXPECT_EQ(store.claim(run, "1", false), Claim::ours);
+    EXPECT_TRUE(store.finish(run.key, "{}", {{"angle_deg", 25.5}}, 1));
+  }
+  ResultsStore store(file, ResultsStore::Access::look);
+  EXPECT_EQ(store.find(run.key)->outputs.at("angle_deg"), 25.5);
+  EXPECT_THROW(store.claim({"ffff", "title: y\n", 1}, "1", false), std::runtime_error);
+}
+
 TEST_F(Store, RefusesWhatIsNone) {
   std::ofstream(file) << "this is a text file that is long enough to be looked at by the library, is it not?";
   EXPECT_THROW(ResultsStore{file}, std::runtime_error);
