@@ -34,6 +34,10 @@ const std::vector<std::string>& common_outputs() {
   return names;
 }
 
+bool has_sections(const std::string& experiment) {
+  return experiment == "end_dump" || experiment == "push_dump";
+}
+
 std::vector<std::string> outputs_of(const std::string& experiment) {
   if (experiment == "repose_lift")
     return {"angle_deg", "height_over_radius_deg", "half_coverage_deg", "height_m", "radius_m", "runaways"};
@@ -50,7 +54,7 @@ bool may_give(const std::string& experiment, const std::string& output) {
   const auto& common = common_outputs();
   if (std::find(names.begin(), names.end(), output) != names.end()) return true;
   if (std::find(common.begin(), common.end(), output) != common.end()) return true;
-  if (experiment != "end_dump") return false;
+  if (!has_sections(experiment)) return false;
   const auto section = output.rfind('_');  // chi_S6, d50_m_S1
   return section != std::string::npos &&
          std::find(names.begin(), names.end(), output.substr(0, section) + "_S1") != names.end();
@@ -58,7 +62,7 @@ bool may_give(const std::string& experiment, const std::string& output) {
 
 std::string outputs_given(const std::string& experiment) {
   return fmt::format("{}, {}", fmt::join(outputs_of(experiment), ", "), fmt::join(common_outputs(), ", ")) +
-         (experiment == "end_dump" ? "; S2, S3 and so on alike" : "");
+         (has_sections(experiment) ? "; S2, S3 and so on alike" : "");
 }
 
 std::map<std::string, double> run_outputs(const std::string& summary) {

@@ -36,7 +36,7 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
   r.interrupted = outcome.interrupted;
   r.final_state = std::move(outcome.final_state);
   r.original = std::move(outcome.original);
-  if (const auto* dump = std::get_if<EndDump>(&scenario.experiment)) {
+  if (const BenchSpec* bench = bench_of(scenario)) {
     // What is not yet dumped when the user ends a run is in the container, not in the pile.
     int last = 0;
     for (const Grain& g : r.final_state.grains) last = std::max(last, g.dump);
@@ -49,14 +49,14 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
       numbers.insert(numbers.end(), scenario.output.further_sections.begin(),
                      scenario.output.further_sections.end());
       for (const int n : numbers) {
-        r.sections.push_back(analyse_sections(pile, dumped, dump->bench.height, n));
+        r.sections.push_back(analyse_sections(pile, dumped, bench->height, n));
         r.sections.back().dumps = dumps;
       }
     };
     add_tables(r.final_state.grains, last);
     for (const RunOutcome::AfterDump& after : outcome.after_dumps) add_tables(after.pile.grains, after.dump);
     r.profile = slope_profile(r.final_state.grains);
-    r.slope_angle = slope_angle(r.profile, dump->bench.height);
+    r.slope_angle = slope_angle(r.profile, bench->height);
   } else if (outcome.rebound_height) {
     r.rebound_height = outcome.rebound_height;
   } else if (!r.final_state.grains.empty()) {
@@ -76,7 +76,7 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
   result.seeds = std::move(seeds);
   result.notes = std::move(notes);
   result.wall_seconds = wall_seconds;
-  if (const auto* dump = std::get_if<EndDump>(&scenario.experiment)) result.bench_height = dump->bench.height;
+  if (const BenchSpec* bench = bench_of(scenario)) result.bench_height = bench->height;
   result.comparison = compare_with_reference(result.seeds, reference, scenario.compare);
 
   double overlap = 0, lost = 0, mass = 0, left_out = 0;

@@ -159,8 +159,7 @@ int run_run(const RunOptions& options) {
   scree::write_sections_csv(result, out / "sections.csv");
   if (!options.summary_only) {
     scree::SceneFacts scene;
-    if (const auto* dump = std::get_if<scree::EndDump>(&scenario.experiment))
-      scene.bench_slope = dump->bench.slope_deg;
+    if (const scree::BenchSpec* bench = scree::bench_of(scenario)) scene.bench_slope = bench->slope_deg;
     scree::write_report(result, out, scene);
   }
 

@@ -71,6 +71,12 @@ def truck_gate():
     return box(0, 0.2, -4.3, 4.3, -0.3, 4)
 
 
+def push_wall():
+    """Upright plate 8 m wide (y -4..4), 4 m high, 0.3 m thick (x -0.3..0), pushes in +x. Origin: middle of the lower
+    front edge."""
+    return box(-0.3, 0, -4, 4, 0, 4)
+
+
 def dozer_blade():
     """Blade 8 m wide (y -4..4), 2 m high, 0.2 m thick, hollow side towards +x. Profile: an arc of radius 4 m over 30 degrees in 12
     segments about the line x = 4, z = 0; upright at the cutting edge, leaning forward at the top. Origin: middle of
@@ -135,6 +141,7 @@ def bucket(inner_diameter, inner_height, wall, n):
 MESHES = {
     "truck_bed": truck_bed(),
     "truck_gate": truck_gate(),
+    "push_wall": push_wall(),
     "dozer_blade": dozer_blade(),
     # Repose angle test: lifted off its filling, so it has no bottom.
     "bucket_repose": tube(0.35, 0.60, 0.005, 64),

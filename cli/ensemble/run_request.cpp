@@ -53,6 +53,8 @@ RunRequest run_request(Scenario scenario, std::uint64_t seed, const std::string&
   if (auto* dump = std::get_if<EndDump>(&scenario.experiment)) {
     replace_by_content(dump->truck.bed_mesh);
     replace_by_content(dump->truck.gate_mesh);
+  } else if (auto* push = std::get_if<PushDump>(&scenario.experiment)) {
+    replace_by_content(push->blade.mesh);
   } else if (auto* lift = std::get_if<ReposeLift>(&scenario.experiment)) {
     replace_by_content(lift->container_mesh);
   }

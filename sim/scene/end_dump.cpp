@@ -2,9 +2,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/material/grading.h"
+#include "sim/scene/bench_loads.h"
 #include "sim/scene/ground.h"
-#include "sim/scene/load.h"
 #include "sim/scene/stage.h"
 
 namespace scree {
@@ -56,24 +55,10 @@ RunOutcome run_end_dump(const Scenario& scenario, const EndDump& e, std::uint64_
   Stage stage(scenario, seed, threads, hooks, low, high);
   RockWorld& world = stage.world();
 
-  // Every load first: what will be dumped does not depend on what happens.
-  const Grading grading = read_grading(scenario.grading_file);
   const double start_tilt = e.truck.release == Release::hoist ? 0.0 : e.truck.tilt_deg;
-  std::vector<std::vector<NewSphere>> loads;
-  std::vector<double> heights, points;
-  for (int dump = 1; dump <= e.dumps; ++dump) {
-    const std::vector<double> diameters = generate_diameters(grading, e.payload, scenario.material.density,
-                                                             seed, static_cast<std::uint64_t>(dump));
-    const Load load = fill_region({e.truck.load_box}, diameters, seed, static_cast<std::uint64_t>(dump));
-    points.push_back(e.points[static_cast<std::size_t>(dump - 1) % e.points.size()]);
-    heights.push_back(load.height);
-    const Pose pose = truck_pose(e, points.back(), start_tilt);
-    std::vector<NewSphere> spheres;
-    for (std::size_t k = 0; k < diameters.size(); ++k)
-      spheres.push_back({pose.to_world(load.positions[k]), diameters[k], dump});
-    loads.push_back(std::move(spheres));
-  }
-  stage.begin(make_base_layer(e.bench, seed), loads);
+  const BenchLoads loads = make_bench_loads(scenario, e.payload, e.dumps, e.points, e.truck.load_box, seed,
+                                            [&](double y) { return truck_pose(e, y, start_tilt); });
+  stage.begin(make_base_layer(e.bench, seed), loads.spheres);
   world.add_mesh(make_bench(e.bench), stage.surface({}, {}), Motion());
   stage.add_tools();
 
@@ -81,14 +66,14 @@ RunOutcome run_end_dump(const Scenario& scenario, const EndDump& e, std::uint64_
   const TriangleMesh gate_mesh = stage.read(e.truck.gate_mesh, e.truck.scale);
   const Surface surface = stage.surface(e.truck.mu, e.truck.mu_r);
   for (int dump = 1; dump <= e.dumps; ++dump) {
-    const double y = points[static_cast<std::size_t>(dump - 1)];
+    const double y = loads.points[static_cast<std::size_t>(dump - 1)];
     const double share = static_cast<double>(dump - 1) / e.dumps, part = 1.0 / e.dumps;
     const Pose pose = truck_pose(e, y, start_tilt);
     stage.set_dump(dump, e.dumps);
     const int bed = world.add_mesh(bed_mesh, surface, Motion::fixed(pose));
     const int gate = world.add_mesh(gate_mesh, surface, Motion::fixed(pose));
     std::vector<int> walls;
-    const double height = heights[static_cast<std::size_t>(dump - 1)];
+    const double height = loads.heights[static_cast<std::size_t>(dump - 1)];
     if (height > e.truck.load_box.z())
       for (TriangleMesh& wall : guard(e.truck.load_box, height))
         walls.push_back(world.add_mesh(std::move(wall), surface, Motion::fixed(pose)));

@@ -49,6 +49,10 @@ double toe_of(const BenchSpec& bench) {
   return bench.height / std::tan(radians(bench.slope_deg));
 }
 
+double ball_radius(BaseLayer layer) {
+  return layer == BaseLayer::none ? 0.0 : 0.5 * kBallDiameter;
+}
+
 TriangleMesh make_bench(const BenchSpec& b) {
   const double toe = toe_of(b), half = 0.5 * b.width;
   // Surface profile from the back of the top to the end of the floor, and the same below.

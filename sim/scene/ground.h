@@ -12,6 +12,9 @@ namespace scree {
 /// x of the toe (m).
 double toe_of(const BenchSpec& bench);
 
+/// How far the balls of a layer stand out of the surface that carries their centres (m); 0 without a layer.
+double ball_radius(BaseLayer layer);
+
 /// The bench as a closed solid, 5 m deep below its floor.
 TriangleMesh make_bench(const BenchSpec& bench);
 

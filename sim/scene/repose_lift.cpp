@@ -13,8 +13,7 @@ RunOutcome run_repose_lift(const Scenario& scenario, const ReposeLift& e, std::u
   const double r = e.floor_radius;
   const std::vector<double> diameters =
       generate_diameters(read_grading(scenario.grading_file), e.mass, scenario.material.density, seed, 1);
-  const double floor =
-      e.base_layer == BaseLayer::none ? 0.0 : 0.5;  // the container stands on the layer of 1 m balls
+  const double floor = ball_radius(e.base_layer);  // the container stands on the balls
   const Load load = fill_region({{e.diameter, 0, e.height}}, diameters, seed, 1);
   const double lift = e.height + 2.0 * diameters.front();
   Stage stage(scenario, seed, threads, hooks, {-r, -r, -0.5 * e.height},

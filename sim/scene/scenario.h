@@ -73,6 +73,28 @@ struct EndDump {
   std::vector<double> points{0.0};  ///< y of the dump points (m), visited in turn
 };
 
+/// Blade that pushes a load over the crest. Local frame: origin at the middle of the cutting edge, front
+/// towards +x.
+struct BladeSpec {
+  std::filesystem::path mesh;
+  double scale = 1.0;
+  double velocity = 0.2;  ///< m/s
+  double overshoot = 0;   ///< how far beyond the crest it goes, m
+  std::optional<double> mu, mu_r;
+};
+
+/// Loads that lie on the bench top, between side walls, and are pushed over the crest.
+struct PushDump {
+  BenchSpec bench;
+  BladeSpec blade;
+  Vec3 load_box{8, 8, 4};  ///< length, width, height of the space the load is laid into, m
+  double distance = 0;     ///< of the load's front from the crest, m
+  double settle_s = 1.0;   ///< time the load settles before its front is opened
+  int dumps = 4;
+  double payload = 300e3;           ///< kg
+  std::vector<double> points{0.0};  ///< y of the places (m), visited in turn
+};
+
 /// Container filled with rock, then lifted: the repose angle test.
 struct ReposeLift {
   std::filesystem::path container_mesh;
@@ -127,7 +149,7 @@ struct Scenario {
   std::vector<std::uint64_t> seeds{10001};
   Material material;
   std::filesystem::path grading_file;
-  std::variant<EndDump, ReposeLift, DropTest> experiment;
+  std::variant<EndDump, ReposeLift, DropTest, PushDump> experiment;
   std::vector<ToolSpec> tools;
   StopRule stop;
   Numerics numerics;
@@ -138,8 +160,11 @@ struct Scenario {
   std::string resolved_yaml;  ///< the whole scenario with every default filled in
 };
 
-/// Name of the experiment's type in a file: end_dump, repose_lift, drop_test.
+/// Name of the experiment's type in a file: end_dump, repose_lift, drop_test, push_dump.
 std::string_view experiment_type(const Scenario& scenario);
+
+/// The bench of an experiment that has one; null otherwise.
+const BenchSpec* bench_of(const Scenario& scenario);
 
 /// One thing wrong in a scenario file.
 struct ScenarioError {

@@ -28,6 +28,7 @@ class Checks {
     meshes();
     read_the_grading();
     if (const auto* dump = std::get_if<EndDump>(&s_.experiment)) end_dump(*dump);
+    if (const auto* push = std::get_if<PushDump>(&s_.experiment)) push_dump(*push);
     if (const auto* lift = std::get_if<ReposeLift>(&s_.experiment)) repose_lift(*lift);
     tools();
     if (notes_.good({&s_.stop.min_time, &s_.stop.max_time}) && s_.stop.min_time > s_.stop.max_time)
@@ -77,42 +78,56 @@ class Checks {
   }
 
   void end_dump(const EndDump& e) {
-    if (notes_.good({&e.payload, &e.dumps}))
-      spheres(e.payload * e.dumps, &e.payload, "experiment.payload_t",
-              fmt::format("{} dumps of {} t", e.dumps, e.payload / 1000), "lower payload_t or dumps");
-    const Vec3& box = e.truck.load_box;
-    const bool box_good = notes_.good({&e.truck.load_box});
-    if (box_good && notes_.good({&e.payload, &s_.material.density})) {
-      const double rock = e.payload / s_.material.density;
-      if (rock > kDensestFill * box.prod())
-        fail(&e.truck.load_box,
-             fmt::format(
-                 "experiment.truck.load_box_m: too small for the payload: {:.3g} t are {:.3g} m3 of solid "
-                 "rock, "
-                 "the box of {:.3g} m3 holds at most {:.3g} m3 ({} of it); enlarge it or lower payload_t",
-                 e.payload / 1000, rock, box.prod(), kDensestFill * box.prod(), kDensestFill));
-    }
     if (e.truck.release == Release::hoist && notes_.good({&e.truck.tilt_deg}) && e.truck.tilt_deg <= 0)
       fail(&e.truck.tilt_deg,
            "experiment.truck.tilt_deg: 0 with release hoist: the bed must tilt, more than 0");
-    if (box_good) largest(box.minCoeff(), &e.truck.load_box, "experiment.truck.load_box_m");
-    if (box_good && notes_.good({&e.bench.width, &e.points})) {
-      const double reach = (e.bench.width - box.y()) / 2;
-      if (reach < 0) {
-        fail(&e.bench.width,
-             fmt::format("experiment.bench.width_m: {} m is narrower than the truck's load box ({} m)",
-                         e.bench.width, box.y()));
-        return;
-      }
-      for (std::size_t i = 0; i < e.points.size(); ++i) {
-        const void* place =
-            notes_.places.contains(&e.points[i]) ? &e.points[i] : static_cast<const void*>(&e.points);
-        if (std::abs(e.points[i]) > reach)
-          fail(place, fmt::format(
-                          "experiment.points_m[{}]: a load box {} m wide at {} m does not fit the bench {} m "
-                          "wide; allowed {} to {} m",
-                          i, box.y(), e.points[i], e.bench.width, -reach, reach));
-      }
+    bench_loads(e, e.truck.load_box, "experiment.truck.load_box_m", "the truck's load box");
+  }
+
+  void push_dump(const PushDump& e) {
+    bench_loads(e, e.load_box, "experiment.load_box_m", "the load");
+    if (notes_.good({&e.load_box, &e.distance, &e.bench.top_length}) &&
+        e.distance + e.load_box.x() + 1 > e.bench.top_length)
+      fail(&e.distance,
+           fmt::format("experiment.distance_m: a load {} m long at {} m from the crest, and the blade "
+                       "behind it, do not lie on a bench top {} m long",
+                       e.load_box.x(), e.distance, e.bench.top_length));
+    if (notes_.good({&e.load_box, &e.distance, &e.blade.overshoot}) &&
+        e.blade.overshoot <= -(e.distance + e.load_box.x()))
+      fail(&e.blade.overshoot,
+           "experiment.blade.overshoot_m: the blade would end where it starts, or behind");
+  }
+
+  /// What holds for all experiments that bring loads over a crest; `what` holds a load.
+  template <class Experiment>
+  void bench_loads(const Experiment& e, const Vec3& box, const std::string& path, std::string_view what) {
+    if (notes_.good({&e.payload, &e.dumps}))
+      spheres(e.payload * e.dumps, &e.payload, "experiment.payload_t",
+              fmt::format("{} dumps of {} t", e.dumps, e.payload / 1000), "lower payload_t or dumps");
+    if (!notes_.good({&box})) return;
+    if (notes_.good({&e.payload, &s_.material.density})) {
+      const double rock = e.payload / s_.material.density;
+      if (rock > kDensestFill * box.prod())
+        fail(&box,
+             fmt::format(
+                 "{}: too small for the payload: {:.3g} t are {:.3g} m3 of solid rock, the box of {:.3g} m3 "
+                 "holds at most {:.3g} m3 ({} of it); enlarge it or lower payload_t",
+                 path, e.payload / 1000, rock, box.prod(), kDensestFill * box.prod(), kDensestFill));
+    }
+    largest(box.minCoeff(), &box, path);
+    if (!notes_.good({&e.bench.width, &e.points})) return;
+    const double reach = (e.bench.width - box.y()) / 2;
+    if (reach < 0)
+      return fail(&e.bench.width, fmt::format("experiment.bench.width_m: {} m is narrower than {} ({} m)",
+                                              e.bench.width, what, box.y()));
+    for (std::size_t i = 0; i < e.points.size(); ++i) {
+      const void* place =
+          notes_.places.contains(&e.points[i]) ? &e.points[i] : static_cast<const void*>(&e.points);
+      if (std::abs(e.points[i]) > reach)
+        fail(place,
+             fmt::format("experiment.points_m[{}]: a load box {} m wide at {} m does not fit the bench {} m "
+                         "wide; allowed {} to {} m",
+                         i, box.y(), e.points[i], e.bench.width, -reach, reach));
     }
   }
 

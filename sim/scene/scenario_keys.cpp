@@ -9,8 +9,8 @@ constexpr Range kScale{1e-6, 1e6};
 constexpr Range kAnywhere{-1e4, 1e4};
 constexpr std::string_view kMetre = "m", kSecond = "s", kDegree = "degrees", kNone = "";
 
-constexpr std::string_view kExperiments[] = {"end_dump", "repose_lift",
-                                             "drop_test"};  // in the order of Scenario::experiment
+constexpr std::string_view kExperiments[] = {"end_dump", "repose_lift", "drop_test",
+                                             "push_dump"};  // in the order of Scenario::experiment
 
 template <class Enum>
 Choice choice(Enum& value, std::vector<std::string_view> names) {
@@ -88,6 +88,34 @@ Fields keys(EndDump& e) {
       {"payload_t", Number{&e.payload, "t", {0.001, 5000}, 1000}, "Mass of one load."},
       {"points_m", Numbers{&e.points, kMetre, {-500, 500}, {1, 500}},
        "Places along the crest where the truck dumps, visited in turn; 0 is the middle."},
+  };
+}
+
+Fields keys(BladeSpec& b) {
+  return {
+      {"mesh", MeshFile{&b.mesh, "meshes/push_wall.stl", &b.scale},
+       "Mesh of the blade; origin at the middle of the cutting edge, front towards +x, z up."},
+      {"mesh_scale", Number{&b.scale, "m", kScale}, kScaleDoc},
+      {"velocity_m_per_s", Number{&b.velocity, "m/s", {0.001, 10}}, "Speed of the push."},
+      {"overshoot_m", Number{&b.overshoot, kMetre, {-10, 10}}, "How far beyond the crest the blade goes."},
+      {"mu", NumberOr{&b.mu, kFriction, kRock}, kMuDoc},
+      {"mu_r", NumberOr{&b.mu_r, kFriction, kRock}, kMuRDoc},
+  };
+}
+
+Fields keys(PushDump& p) {
+  return {
+      {"bench", Group{[&p] { return keys(p.bench); }}, "The bench the load is pushed over."},
+      {"blade", Group{[&p] { return keys(p.blade); }}, "The blade."},
+      {"load_box_m", Vector{&p.load_box, kMetre, {0.1, 50}},
+       "Length, width and height of the space on the bench top that the load is laid into."},
+      {"distance_m", Number{&p.distance, kMetre, {0, 500}}, "Distance of the load's front from the crest."},
+      {"settle_s", Number{&p.settle_s, kSecond, {0, 60}},
+       "Time the load settles before its front is opened."},
+      {"dumps", Integer{&p.dumps, {1, 500}}, "Number of loads."},
+      {"payload_t", Number{&p.payload, "t", {0.001, 5000}, 1000}, "Mass of one load."},
+      {"points_m", Numbers{&p.points, kMetre, {-500, 500}, {1, 500}},
+       "Places along the crest where loads are pushed, visited in turn; 0 is the middle."},
   };
 }
 
@@ -201,17 +229,26 @@ OneOf experiment(Scenario& s) {
   return {
       {std::begin(kExperiments), std::end(kExperiments)},
       "end_dump: truck loads over the crest of a bench; repose_lift: a container filled with rock is lifted; "
-      "drop_test: one rock falls on a floor, and its rebound is measured.",
+      "drop_test: one rock falls on a floor, and its rebound is measured; push_dump: a blade pushes loads "
+      "over the "
+      "crest of a bench.",
       [&s] { return static_cast<int>(s.experiment.index()); },
       [&s](int index) {
         if (index == 0) s.experiment.emplace<EndDump>();
         if (index == 1) s.experiment.emplace<ReposeLift>();
         if (index == 2) s.experiment.emplace<DropTest>();
+        if (index == 3) s.experiment.emplace<PushDump>();
       },
       [&s] { return std::visit([](auto& chosen) { return keys(chosen); }, s.experiment); }};
 }
 
 }  // namespace
+
+const BenchSpec* bench_of(const Scenario& scenario) {
+  if (const auto* dump = std::get_if<EndDump>(&scenario.experiment)) return &dump->bench;
+  if (const auto* push = std::get_if<PushDump>(&scenario.experiment)) return &push->bench;
+  return nullptr;
+}
 
 std::string_view experiment_type(const Scenario& scenario) {
   return kExperiments[scenario.experiment.index()];

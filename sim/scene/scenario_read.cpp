@@ -100,32 +100,31 @@ class Reader {
     target.select(index);
     // Keys of another type have their message already; the table would call them unknown.
     YamlNode known = map;
-    std::erase_if(known.entries, [&](const YamlEntry& e) { return type_of(target, index, e.key) >= 0; });
+    std::erase_if(known.entries, [&](const YamlEntry& e) { return !types_of(target, index, e.key).empty(); });
     group(known, target.fields(), path + ".", {"type"});
   }
 
-  /// Index of the other type that has this key, when the chosen one has not.
-  static int type_of(const OneOf& target, int chosen, std::string_view name) {
+  /// The other types that have this key, when the chosen one has not.
+  static std::vector<std::string> types_of(const OneOf& target, int chosen, std::string_view name) {
     const auto has = [&](int index) {
       target.select(index);
       const Fields fields = target.fields();
       return std::any_of(fields.begin(), fields.end(), [&](const Field& f) { return f.name == name; });
     };
-    int other = -1;
+    std::vector<std::string> others;
     if (!has(chosen))
       for (int i = 0; i < static_cast<int>(target.names.size()); ++i)
-        if (i != chosen && has(i)) other = i;
+        if (i != chosen && has(i)) others.emplace_back(target.names[static_cast<std::size_t>(i)]);
     target.select(chosen);
-    return other;
+    return others;
   }
 
   void other_type(const OneOf& target, int chosen, const YamlEntry& entry, const std::string& path) {
-    const int other = type_of(target, chosen, entry.key);
-    if (other < 0) return;
-    const auto name = [&](int i) { return target.names[static_cast<std::size_t>(i)]; };
+    const std::vector<std::string> others = types_of(target, chosen, entry.key);
+    if (others.empty()) return;
     report(notes_.errors, entry.key_place,
            fmt::format("key '{}' in {} belongs to type {}, but the type here is {}", entry.key, path,
-                       name(other), name(chosen)));
+                       fmt::join(others, " or "), target.names[static_cast<std::size_t>(chosen)]));
   }
 
   void missing(const void* address, const Place& place, const std::string& path, std::string_view doc) {

@@ -59,6 +59,8 @@ RunOutcome run_end_dump(const Scenario& scenario, const EndDump& experiment, std
                         const RunHooks& hooks);
 RunOutcome run_repose_lift(const Scenario& scenario, const ReposeLift& experiment, std::uint64_t seed,
                            int threads, const RunHooks& hooks);
+RunOutcome run_push_dump(const Scenario& scenario, const PushDump& experiment, std::uint64_t seed,
+                         int threads, const RunHooks& hooks);
 RunOutcome run_drop_test(const Scenario& scenario, const DropTest& experiment, std::uint64_t seed,
                          int threads, const RunHooks& hooks);
 

@@ -27,10 +27,14 @@ class ScenarioFolder {
     const std::string faces[] = {facet("0 0 0", "0 1 0", "1 0 0"), facet("0 0 0", "1 0 0", "0 0 1"),
                                  facet("0 0 0", "0 0 1", "0 1 0"), facet("1 0 0", "0 1 0", "0 0 1")};
     const std::string closed = faces[0] + faces[1] + faces[2] + faces[3];
-    for (const char* mesh : {"truck_bed", "truck_gate", "bucket_repose"})
+    for (const char* mesh : {"truck_bed", "truck_gate", "bucket_repose", "push_wall"})
       write(fmt::format("assets/meshes/{}.stl", mesh), fmt::format("solid t\n{}endsolid t\n", closed));
     write("assets/meshes/open.stl", fmt::format("solid t\n{}{}{}endsolid t\n", faces[0], faces[1], faces[2]));
     write("assets/meshes/broken.stl", "solid nothing\n");
+    write("assets/impulse/equivalent.csv",
+          "mu,mu_r,local_damping,friction,rolling,angle_rrlinear_deg,angle_impulse_deg\n0.2,0.4,0.4,0.25,0.5,"
+          "27,28\n"
+          "0.4,0.4,0.4,0.45,0.5,37,37.5\n");
     write("assets/reference/results.csv", "case,quantity\nA1,chi\nA1,mass\nC1,chi\n");
   }
   ~ScenarioFolder() {

@@ -251,6 +251,9 @@ TEST(Schema, IsJsonWithEveryKeyDescribed) {
                           ".tools[].keyframes[].position_m",
                           ".stop.moving_mass_share",
                           ".numerics.impulse_iterations",
+                          ".numerics.impulse_friction",
+                          ".experiment.blade.velocity_m_per_s",
+                          ".experiment.distance_m",
                           ".output.further_sections"})
     EXPECT_THAT(paths, testing::Contains(key));
   const auto& mu = schema["properties"]["material"]["properties"]["mu"];
@@ -263,6 +266,23 @@ TEST(Schema, IsJsonWithEveryKeyDescribed) {
   EXPECT_EQ(schema["then"]["required"], nlohmann::json({"material", "grading", "experiment"}));
 }
 
+TEST(Impulse, TakesWhatIsEquivalentUnlessTold) {
+  const ScenarioFolder folder;
+  const std::string head =
+      "grading: CM0\nengine: impulse\nmaterial: {mu: 0.3, mu_r: 0.4}\nexperiment: {type: end_dump}\n";
+  const auto bullet = [&](const std::string& text) {
+    return folder.load(head + text).scenario.bullet.value();
+  };
+  EXPECT_DOUBLE_EQ(bullet("").friction, 0.35);
+  EXPECT_DOUBLE_EQ(bullet("").rolling, 0.5);
+  EXPECT_DOUBLE_EQ(bullet("").error_deg, 1);
+  EXPECT_DOUBLE_EQ(bullet("numerics: {impulse_friction: 0.9}\n").friction, 0.9);
+  EXPECT_DOUBLE_EQ(bullet("numerics: {impulse_friction: 0.9, impulse_rolling: 0.8}\n").rolling, 0.8);
+  EXPECT_DOUBLE_EQ(bullet("numerics: {impulse_friction: equivalent}\n").friction, 0.35);
+  EXPECT_FALSE(folder.load("grading: CM0\nmaterial: {mu: 0.9, mu_r: 0.9}\nexperiment: {type: end_dump}\n")
+                   .scenario.bullet);
+}
+
 TEST(Estimate, OneSizeIsMassOverTheMassOfASphere) {
   // Nearly one size: N = M / (rho pi/6 d^3) with d = 0.1 m.
   const Grading grading("one", {{0.1, 0}, {0.1000001, 1}});
@@ -273,14 +293,15 @@ TEST(Estimate, OneSizeIsMassOverTheMassOfASphere) {
 TEST(Scenarios, EveryFileOfTheProjectLoads) {
   const std::filesystem::path source = SCREE_SOURCE_DIR;
   int files = 0;
-  for (const auto& item : std::filesystem::directory_iterator(source / "scenarios")) {
-    if (item.path().extension() != ".yaml") continue;
+  for (const auto& item : std::filesystem::recursive_directory_iterator(source / "scenarios")) {
+    const std::string folder = item.path().parent_path().filename();
+    if (item.path().extension() != ".yaml" || folder == "sweeps" || folder == "calibrations") continue;
     ++files;
     const auto result = load_scenario(item.path(), {}, source / "assets");
     EXPECT_THAT(texts(result), IsEmpty()) << item.path();
     EXPECT_THAT(result.warnings, IsEmpty()) << item.path();
   }
-  EXPECT_GE(files, 7);
+  EXPECT_GE(files, 17);
 }
 
 }  // namespace
