@@ -35,7 +35,7 @@ const std::vector<std::string>& common_outputs() {
 }
 
 bool has_sections(const std::string& experiment) {
-  return experiment == "end_dump" || experiment == "push_dump";
+  return experiment == "end_dump" || experiment == "push_dump" || experiment == "bucket_dump";
 }
 
 std::vector<std::string> outputs_of(const std::string& experiment) {

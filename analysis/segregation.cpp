@@ -43,11 +43,7 @@ std::vector<double> sieves_for(double smallest, double largest) {
 
 }  // namespace
 
-SectionTable analyse_sections(const std::vector<Grain>& pile, const std::vector<Grain>& original,
-                              double crest_height, int n) {
-  if (n < 1) throw std::invalid_argument(fmt::format("{} sections: at least 1 is needed", n));
-  if (!(crest_height > 0))
-    throw std::invalid_argument(fmt::format("crest height {} m must be above 0", crest_height));
+SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<Grain>& original) {
   if (original.empty()) throw std::invalid_argument("the original material has no grain");
 
   std::vector<const Grain*> all;
@@ -64,24 +60,13 @@ SectionTable analyse_sections(const std::vector<Grain>& pile, const std::vector<
   table.sieves = sieves_for(smallest->diameter, largest->diameter);
   for (const double sieve : table.sieves) table.original_passing.push_back(whole.passing(sieve));
 
-  std::vector<std::vector<const Grain*>> slices(n);
-  for (const Grain& grain : pile) {
-    const double below_crest = (crest_height - grain.position.z()) / crest_height;
-    if (!(below_crest >= 0)) {  // above the crest, or no number
-      table.mass_outside += grain.mass;
-      continue;
-    }
-    // A small grain between the balls of the floor can lie below it: it belongs to the lowest section.
-    slices[static_cast<int>(std::min(below_crest * n, n - 1.0))].push_back(&grain);
-  }
-
   const double spread = table.dcq_log - table.d0_log;
-  for (int k = 0; k < n; ++k) {
+  for (const NamedGrains& part : parts) {
     Section section;
-    section.name = fmt::format("S{}", k + 1);
-    section.x_over_l = (2.0 * k + 1) / (2.0 * n);
-    section.grains = static_cast<int>(slices[k].size());
-    const auto curve = curve_of(slices[k]);
+    section.name = part.name;
+    section.x_over_l = part.x_over_l;
+    section.grains = static_cast<int>(part.grains.size());
+    const auto curve = curve_of(part.grains);
     const auto diameter = [&](double p) { return curve ? curve->diameter(p) : nan; };
     section.mass = curve ? curve->mass() : 0;
     // A material of one size has no coarser quartile to segregate: chi is not defined.
@@ -100,6 +85,28 @@ SectionTable analyse_sections(const std::vector<Grain>& pile, const std::vector<
     for (const double sieve : table.sieves) section.passing.push_back(curve ? curve->passing(sieve) : nan);
     table.sections.push_back(std::move(section));
   }
+  return table;
+}
+
+SectionTable analyse_sections(const std::vector<Grain>& pile, const std::vector<Grain>& original,
+                              double crest_height, int n) {
+  if (n < 1) throw std::invalid_argument(fmt::format("{} sections: at least 1 is needed", n));
+  if (!(crest_height > 0))
+    throw std::invalid_argument(fmt::format("crest height {} m must be above 0", crest_height));
+  std::vector<NamedGrains> slices;
+  for (int k = 0; k < n; ++k) slices.push_back({fmt::format("S{}", k + 1), (2.0 * k + 1) / (2.0 * n), {}});
+  double outside = 0;
+  for (const Grain& grain : pile) {
+    const double below_crest = (crest_height - grain.position.z()) / crest_height;
+    if (!(below_crest >= 0)) {  // above the crest, or no number
+      outside += grain.mass;
+      continue;
+    }
+    // A small grain between the balls of the floor can lie below it: it belongs to the lowest section.
+    slices[static_cast<std::size_t>(std::min(below_crest * n, n - 1.0))].grains.push_back(&grain);
+  }
+  SectionTable table = tabulate(slices, original);
+  table.mass_outside = outside;
   return table;
 }
 

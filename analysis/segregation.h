@@ -54,9 +54,21 @@ struct SectionTable {
   int dumps = 0;                   ///< dumps in the pile; 0: not known
 };
 
+/// Grains that make up a section.
+struct NamedGrains {
+  std::string name;
+  double x_over_l = 0;
+  std::vector<const Grain*> grains;
+};
+
+/// Gradings and segregation of parts of a pile against `original` (every grain as dumped). chi = (log
+/// d_section - log d_0) / (log d_CQ - log d_0), thesis chapter 3. Throws std::invalid_argument when
+/// `original` is empty.
+SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<Grain>& original);
+
 /// Cuts the slope into `n` slices of equal height between `crest_height` (S1) and 0 (Sn) and analyses each
 /// against `original` (every grain as dumped). Grains above the crest height are outside (counted as
-/// mass_outside). chi = (log d_section - log d_0) / (log d_CQ - log d_0), thesis chapter 3.
+/// mass_outside).
 SectionTable analyse_sections(const std::vector<Grain>& pile, const std::vector<Grain>& original,
                               double crest_height, int n);
 

@@ -113,7 +113,8 @@ void draw(const ContourMap& picture, const std::filesystem::path& file) {
           fmt::format(", $labels{} using 1:2:(0):3 with labels boxed tc rgb '#000000' font ',10'", name);
     script += "\n";
   };
-  if (picture.beside) script += "set multiplot layout 1,2 margins 0.07,0.92,0.18,0.92 spacing 0.09\nunset colorbox\n";
+  if (picture.beside)
+    script += "set multiplot layout 1,2 margins 0.07,0.92,0.18,0.92 spacing 0.09\nunset colorbox\n";
   panel("1", picture.beside ? picture.title + ": simulated" : picture.title);
   if (picture.beside) {
     script += "set colorbox\n";

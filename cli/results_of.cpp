@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "analysis/half_cone.h"
 #include "analysis/slope_profile.h"
 #include "scree_version.h"
 #include "sim/scene/ground.h"
@@ -57,6 +58,10 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
     for (const RunOutcome::AfterDump& after : outcome.after_dumps) add_tables(after.pile.grains, after.dump);
     r.profile = slope_profile(r.final_state.grains);
     r.slope_angle = slope_angle(r.profile, bench->height);
+  } else if (std::holds_alternative<BucketDump>(scenario.experiment)) {
+    const HalfCone cone = analyse_half_cone(r.final_state.grains, r.original);
+    r.sections.push_back(cone.surface);
+    r.slope_angle = cone.shape.angle;
   } else if (outcome.rebound_height) {
     r.rebound_height = outcome.rebound_height;
   } else if (!r.final_state.grains.empty()) {

@@ -55,6 +55,8 @@ RunRequest run_request(Scenario scenario, std::uint64_t seed, const std::string&
     replace_by_content(dump->truck.gate_mesh);
   } else if (auto* push = std::get_if<PushDump>(&scenario.experiment)) {
     replace_by_content(push->blade.mesh);
+  } else if (auto* bucket = std::get_if<BucketDump>(&scenario.experiment)) {
+    replace_by_content(bucket->container_mesh);
   } else if (auto* lift = std::get_if<ReposeLift>(&scenario.experiment)) {
     replace_by_content(lift->container_mesh);
   }

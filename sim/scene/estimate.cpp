@@ -8,6 +8,8 @@ namespace scree {
 double total_mass(const Scenario& scenario) {
   if (const auto* dump = std::get_if<EndDump>(&scenario.experiment)) return dump->payload * dump->dumps;
   if (const auto* push = std::get_if<PushDump>(&scenario.experiment)) return push->payload * push->dumps;
+  if (const auto* buckets = std::get_if<BucketDump>(&scenario.experiment))
+    return buckets->mass * buckets->buckets;
   if (const auto* lift = std::get_if<ReposeLift>(&scenario.experiment)) return lift->mass;
   const double diameter = std::get<DropTest>(scenario.experiment).diameter;
   return scenario.material.density * std::numbers::pi / 6 * diameter * diameter * diameter;

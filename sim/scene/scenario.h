@@ -109,6 +109,21 @@ struct ReposeLift {
   BaseLayer base_layer = BaseLayer::none;
 };
 
+/// Buckets emptied one after another over the edge of a wall: the laboratory segregation test.
+struct BucketDump {
+  std::filesystem::path container_mesh;
+  double scale = 1.0;
+  double diameter = 0.27;  ///< inner, m
+  double height = 0.30;    ///< inner, m
+  double mass = 20;        ///< of one bucket's rock, kg
+  int buckets = 10;
+  double tilt_deg = 60;                                ///< of the bucket's axis to the horizontal, mouth down
+  double wall_height = 1.0;                            ///< m
+  double floor_radius = 10;                            ///< how far the floor reaches from the wall, m
+  std::optional<double> container_mu, container_mu_r;  ///< default the rock's own
+  std::optional<double> floor_mu, floor_mu_r;          ///< of floor and wall
+};
+
 /// One rock falls on a floor.
 struct DropTest {
   double diameter = 0.1;  ///< m
@@ -149,7 +164,7 @@ struct Scenario {
   std::vector<std::uint64_t> seeds{10001};
   Material material;
   std::filesystem::path grading_file;
-  std::variant<EndDump, ReposeLift, DropTest, PushDump> experiment;
+  std::variant<EndDump, ReposeLift, DropTest, PushDump, BucketDump> experiment;
   std::vector<ToolSpec> tools;
   StopRule stop;
   Numerics numerics;
@@ -160,7 +175,7 @@ struct Scenario {
   std::string resolved_yaml;  ///< the whole scenario with every default filled in
 };
 
-/// Name of the experiment's type in a file: end_dump, repose_lift, drop_test, push_dump.
+/// Name of the experiment's type in a file: end_dump, repose_lift, drop_test, push_dump, bucket_dump.
 std::string_view experiment_type(const Scenario& scenario);
 
 /// The bench of an experiment that has one; null otherwise.

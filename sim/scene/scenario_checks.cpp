@@ -30,6 +30,7 @@ class Checks {
     if (const auto* dump = std::get_if<EndDump>(&s_.experiment)) end_dump(*dump);
     if (const auto* push = std::get_if<PushDump>(&s_.experiment)) push_dump(*push);
     if (const auto* lift = std::get_if<ReposeLift>(&s_.experiment)) repose_lift(*lift);
+    if (const auto* buckets = std::get_if<BucketDump>(&s_.experiment)) bucket_dump(*buckets);
     tools();
     if (notes_.good({&s_.stop.min_time, &s_.stop.max_time}) && s_.stop.min_time > s_.stop.max_time)
       fail(&s_.stop.min_time, fmt::format("stop.min_time_s: {} is more than stop.max_time_s ({})",
@@ -136,14 +137,28 @@ class Checks {
     spheres(r.mass, &r.mass, "experiment.mass_kg", fmt::format("{} kg", r.mass), "lower mass_kg");
     if (!notes_.good({&r.diameter, &r.height})) return;
     largest(r.diameter, &r.diameter, "experiment.container.diameter_m");
-    const double volume = std::numbers::pi / 4 * r.diameter * r.diameter * r.height;
-    const double rock = r.mass / s_.material.density;
+    container(r.mass, r.diameter, r.height);
+  }
+
+  void bucket_dump(const BucketDump& b) {
+    if (!notes_.good({&b.mass, &b.buckets})) return;
+    spheres(b.mass * b.buckets, &b.mass, "experiment.mass_kg",
+            fmt::format("{} buckets of {} kg", b.buckets, b.mass), "lower mass_kg or buckets");
+    if (!notes_.good({&b.diameter, &b.height})) return;
+    largest(b.diameter, &b.diameter, "experiment.container.diameter_m");
+    container(b.mass, b.diameter, b.height);
+  }
+
+  /// A cylinder (m) holds `mass` (kg).
+  void container(const double& mass, double diameter, double height) {
+    const double volume = std::numbers::pi / 4 * diameter * diameter * height;
+    const double rock = mass / s_.material.density;
     if (notes_.good({&s_.material.density}) && rock > kDensestFill * volume)
-      fail(&r.mass,
+      fail(&mass,
            fmt::format(
                "experiment.mass_kg: {} kg are {:.3g} m3 of solid rock, the container of {:.3g} m3 holds "
                "at most {:.3g} m3 ({} of it); lower mass_kg or enlarge the container",
-               r.mass, rock, volume, kDensestFill * volume, kDensestFill));
+               mass, rock, volume, kDensestFill * volume, kDensestFill));
   }
 
   void largest(double room, const void* key, std::string_view path) {

@@ -9,8 +9,8 @@ constexpr Range kScale{1e-6, 1e6};
 constexpr Range kAnywhere{-1e4, 1e4};
 constexpr std::string_view kMetre = "m", kSecond = "s", kDegree = "degrees", kNone = "";
 
-constexpr std::string_view kExperiments[] = {"end_dump", "repose_lift", "drop_test",
-                                             "push_dump"};  // in the order of Scenario::experiment
+constexpr std::string_view kExperiments[] = {"end_dump", "repose_lift", "drop_test", "push_dump",
+                                             "bucket_dump"};  // in the order of Scenario::experiment
 
 template <class Enum>
 Choice choice(Enum& value, std::vector<std::string_view> names) {
@@ -148,6 +148,38 @@ Fields keys(ReposeLift& r) {
   };
 }
 
+Fields bucket_keys(BucketDump& b) {
+  return {
+      {"mesh", MeshFile{&b.container_mesh, "meshes/bucket_segregation.stl", &b.scale},
+       "Mesh of the bucket; origin at the centre of its inner bottom, mouth towards z."},
+      {"mesh_scale", Number{&b.scale, "m", kScale}, kScaleDoc},
+      {"diameter_m", Number{&b.diameter, kMetre, {0.01, 50}}, "Inner diameter."},
+      {"height_m", Number{&b.height, kMetre, {0.01, 50}}, "Inner height."},
+      {"tilt_deg", Number{&b.tilt_deg, kDegree, {0, 90}}, "Tilt of its axis to the horizontal, mouth down."},
+      {"mu", NumberOr{&b.container_mu, kFriction, kRock}, kMuDoc},
+      {"mu_r", NumberOr{&b.container_mu_r, kFriction, kRock}, kMuRDoc},
+  };
+}
+
+Fields ground_keys(BucketDump& b) {
+  return {
+      {"radius_m", Number{&b.floor_radius, kMetre, {0.01, 500}}, "How far the floor reaches from the wall."},
+      {"wall_height_m", Number{&b.wall_height, kMetre, {0.01, 100}},
+       "Height of the wall the rock falls along."},
+      {"mu", NumberOr{&b.floor_mu, kFriction, kRock}, kMuDoc},
+      {"mu_r", NumberOr{&b.floor_mu_r, kFriction, kRock}, kMuRDoc},
+  };
+}
+
+Fields keys(BucketDump& b) {
+  return {
+      {"container", Group{[&b] { return bucket_keys(b); }}, "The bucket."},
+      {"buckets", Integer{&b.buckets, {1, 500}}, "How many are emptied, one after another."},
+      {"mass_kg", Number{&b.mass, "kg", {0.001, 5e6}}, "Mass of the rock in one bucket."},
+      {"floor", Group{[&b] { return ground_keys(b); }}, "The floor and the wall."},
+  };
+}
+
 Fields keys(DropTest& d) {
   return {
       {"diameter_m", Number{&d.diameter, kMetre, {0.001, 10}}, "Diameter of the rock."},
@@ -231,13 +263,14 @@ OneOf experiment(Scenario& s) {
       "end_dump: truck loads over the crest of a bench; repose_lift: a container filled with rock is lifted; "
       "drop_test: one rock falls on a floor, and its rebound is measured; push_dump: a blade pushes loads "
       "over the "
-      "crest of a bench.",
+      "crest of a bench; bucket_dump: buckets are emptied along a wall.",
       [&s] { return static_cast<int>(s.experiment.index()); },
       [&s](int index) {
         if (index == 0) s.experiment.emplace<EndDump>();
         if (index == 1) s.experiment.emplace<ReposeLift>();
         if (index == 2) s.experiment.emplace<DropTest>();
         if (index == 3) s.experiment.emplace<PushDump>();
+        if (index == 4) s.experiment.emplace<BucketDump>();
       },
       [&s] { return std::visit([](auto& chosen) { return keys(chosen); }, s.experiment); }};
 }

@@ -165,6 +165,7 @@ RunOutcome run_scenario(const Scenario& scenario, std::uint64_t seed, int thread
                      [&](const EndDump& e) { return run_end_dump(scenario, e, seed, threads, hooks); },
                      [&](const ReposeLift& e) { return run_repose_lift(scenario, e, seed, threads, hooks); },
                      [&](const PushDump& e) { return run_push_dump(scenario, e, seed, threads, hooks); },
+                     [&](const BucketDump& e) { return run_bucket_dump(scenario, e, seed, threads, hooks); },
                      [&](const DropTest& e) { return run_drop_test(scenario, e, seed, threads, hooks); },
                  },
                  scenario.experiment);

@@ -61,6 +61,8 @@ RunOutcome run_repose_lift(const Scenario& scenario, const ReposeLift& experimen
                            int threads, const RunHooks& hooks);
 RunOutcome run_push_dump(const Scenario& scenario, const PushDump& experiment, std::uint64_t seed,
                          int threads, const RunHooks& hooks);
+RunOutcome run_bucket_dump(const Scenario& scenario, const BucketDump& experiment, std::uint64_t seed,
+                           int threads, const RunHooks& hooks);
 RunOutcome run_drop_test(const Scenario& scenario, const DropTest& experiment, std::uint64_t seed,
                          int threads, const RunHooks& hooks);
 

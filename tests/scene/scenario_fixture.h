@@ -27,7 +27,7 @@ class ScenarioFolder {
     const std::string faces[] = {facet("0 0 0", "0 1 0", "1 0 0"), facet("0 0 0", "1 0 0", "0 0 1"),
                                  facet("0 0 0", "0 0 1", "0 1 0"), facet("1 0 0", "0 1 0", "0 0 1")};
     const std::string closed = faces[0] + faces[1] + faces[2] + faces[3];
-    for (const char* mesh : {"truck_bed", "truck_gate", "bucket_repose", "push_wall"})
+    for (const char* mesh : {"truck_bed", "truck_gate", "bucket_repose", "bucket_segregation", "push_wall"})
       write(fmt::format("assets/meshes/{}.stl", mesh), fmt::format("solid t\n{}endsolid t\n", closed));
     write("assets/meshes/open.stl", fmt::format("solid t\n{}{}{}endsolid t\n", faces[0], faces[1], faces[2]));
     write("assets/meshes/broken.stl", "solid nothing\n");
