@@ -130,21 +130,24 @@ TEST_F(SweepCli, InterruptGivesBackAndSaysHowToGoOn) {
 }
 
 TEST_F(SweepCli, PredictsAndCalibratesFromTheStore) {
-  // A bucket of 6 kg gives a heap that has an angle.
-  const std::string six = "seeds: [1, 2]\nset: {experiment.mass_kg: 6}\nties: {material.mu_r: material.mu}\n",
+  // A slim bucket of small grains gives a heap that has an angle.
+  write("gravel.csv", "diameter_mm,passing_pct\n10,0\n25,100\n");
+  const std::string six = "seeds: [1, 2]\nset: {experiment.mass_kg: 3, grading: " + in_folder("gravel.csv") +
+                          ", experiment.container.mesh_scale: 0.4, experiment.container.diameter_m: 0.14, "
+                          "experiment.container.height_m: 0.24}\nties: {material.mu_r: material.mu}\n",
                     store = " --store " + in_folder("store.sqlite"), sweep = in_folder("six.yaml");
-  write("six.yaml", head + six + "design: {type: grid, parameters: {material.mu: [0.1, 0.2, 0.4]}}\n");
+  write("six.yaml", head + six + "design: {type: grid, parameters: {material.mu: [0.2, 0.3, 0.4]}}\n");
   ASSERT_EQ(call("sweep " + sweep + store + " --plot " + in_folder("angles.svg")).code, 0);
   EXPECT_TRUE(fs::exists(folder / "angles.svg"));
-  const Called asked = call("predict " + sweep + store + " material.mu=0.3");
+  const Called asked = call("predict " + sweep + store + " material.mu=0.35");
   EXPECT_EQ(asked.code, 0);
   EXPECT_THAT(asked.text, HasSubstr("from 6 runs"));
   const Called outside = call("predict " + sweep + store + " material.mu=0.9");
   EXPECT_EQ(outside.code, 2);
-  EXPECT_THAT(outside.text, HasSubstr("outside of what was simulated, 0.1 to 0.4"));
+  EXPECT_THAT(outside.text, HasSubstr("outside of what was simulated, 0.2 to 0.4"));
 
   write("calibration.yaml", head + six +
-                                "parameters: {material.mu: {from: 0.1, to: 0.4}}\n"
+                                "parameters: {material.mu: {from: 0.2, to: 0.4}}\n"
                                 "targets: [{output: angle_deg, value: 24, uncertainty: 2}]\n"
                                 "method: {type: bayes, first: 5, most: 8}\n");
   const Called found =
