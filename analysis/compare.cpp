@@ -9,12 +9,6 @@
 
 namespace scree {
 
-namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-/// Into how many sections the thesis cut the slope of a case: told by the names top, middle, bottom (3) or by
-/// the case's name (cm_field_3sec, qb_field_5sec); 6 otherwise (chapter 6).
 int section_count(const ReferenceValue& reference) {
   const std::string& section = reference.section;
   if (section == "top" || section == "middle" || section == "bottom") return 3;
@@ -25,6 +19,10 @@ int section_count(const ReferenceValue& reference) {
   }
   return 6;
 }
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// 0 for the section at the crest; -1 when the name is that of no section.
 int section_index(const std::string& name, int count) {
@@ -92,12 +90,12 @@ double simulated_value(const SeedResult& seed, const ReferenceValue& reference) 
   return chosen ? section_quantity(*chosen, index, reference.quantity) : nan;
 }
 
-/// Bounds (min, max, lt ...) and medians are no value that a mean could be held against.
-bool is_value(const std::string& relation) {
+}  // namespace
+
+bool is_value(const ReferenceValue& reference) {
+  const std::string& relation = reference.relation;
   return relation == "eq" || relation == "approx" || relation == "mean" || relation == "derived";
 }
-
-}  // namespace
 
 std::vector<Comparison> compare_with_reference(const std::vector<SeedResult>& seeds,
                                                const std::vector<ReferenceValue>& reference,
@@ -108,7 +106,7 @@ std::vector<Comparison> compare_with_reference(const std::vector<SeedResult>& se
                      [&](const auto& row) { return row.case_name == name; }))
       throw std::invalid_argument(fmt::format("compare: no reference case is called '{}'", name));
     for (const ReferenceValue& row : reference) {
-      if (row.case_name != name || !is_value(row.relation)) continue;
+      if (row.case_name != name || !is_value(row)) continue;
       std::vector<double> values;
       for (const SeedResult& seed : seeds) values.push_back(simulated_value(seed, row));
       const MeanStd simulated = mean_std(values);

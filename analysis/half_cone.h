@@ -13,8 +13,9 @@ struct HalfCone {
 
 /// Cuts the half cone into three parts by height and three by distance from its axis, which leaves six cells
 /// in the triangle of its section, and analyses the three at the surface against `original` (every grain as
-/// dumped). Height and radius are those of the cone fitted to its flank; runaways and the inner cells count
-/// as mass_outside. Throws std::invalid_argument when there is no original or the heap is no cone.
+/// dumped). Height and radius are those of the cone fitted to its flank; the outermost cell reaches on to
+/// where grains no longer overlap; runaways and the inner cells count as mass_outside. Throws
+/// std::invalid_argument when there is no original or the heap is no cone.
 HalfCone analyse_half_cone(const std::vector<Grain>& pile, const std::vector<Grain>& original);
 
 }  // namespace scree

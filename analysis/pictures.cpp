@@ -267,10 +267,10 @@ std::vector<Picture> draw_pile(const RunResult& result, const SceneFacts& scene,
          fmt::format("What a person at the toe sees ({}); the dotted lines part the sections.", which));
   } else {
     draw(cut_view(result, scene, *seed, range.high), "heap_cut.png", "Cut through the heap",
-         fmt::format(
-             "The heap ({}) with the cone of its height and radius dashed: dark grains are fine, yellow ones "
-             "coarse.",
-             which));
+         fmt::format("The heap ({}): dark grains are fine, yellow ones coarse. A dashed line is the flank "
+                     "whose slope is the "
+                     "repose angle.",
+                     which));
   }
   return pictures;
 }

@@ -179,8 +179,11 @@ std::string section_tables(const RunResult& result) {
   std::string out;
   for (std::size_t table = 0; section_layout(result, table); ++table) {
     if (table == 0)
-      out +=
-          "<h2>Sections of the slope</h2>\n<p>Sections have equal height; the first lies at the crest.</p>\n";
+      out += result.bench_height > 0
+                 ? "<h2>Sections of the slope</h2>\n<p>Sections have equal height; the first lies "
+                   "at the crest.</p>\n"
+                 : "<h2>Cells at the surface</h2>\n<p>The half cone is cut into three parts by "
+                   "height and three by distance from its axis.</p>\n";
     const SectionTable& layout = *section_layout(result, table);
     const bool finished = layout.dumps == section_layout(result, 0)->dumps;
     out += fmt::format("<h3>{} sections{}</h3>\n", layout.sections.size(),

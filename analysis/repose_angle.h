@@ -6,8 +6,8 @@ namespace scree {
 
 /// Readings of the repose angle of one heap (degrees).
 ///
-/// `angle` is the one that is compared and calibrated. The thesis describes `height_over_radius`; its tables
-/// are met by the slope of the flank (docs/calibration.md has the three readings against all of them).
+/// `angle` is the one that is compared and calibrated. The thesis describes `height_over_radius`; the slope
+/// of the flank is nearest to its tables (docs/results.md has the three readings against all of them).
 struct ReposeAngle {
   double angle = 0;               ///< slope of the mean surface between 20 and 80 % of its height at the axis
   double height_over_radius = 0;  ///< atan(H / R), R the mean of four directions out to where grains no

@@ -29,12 +29,13 @@ struct SeedResult {
   bool at_rest = false;                  ///< every dump came to rest before max_time
   bool interrupted = false;
   Snapshot final_state;
-  std::vector<Grain> original;                 ///< every grain as generated (ids, diameters, masses)
-  std::vector<SectionTable> sections;          ///< one for each number of sections asked for (end dumping)
+  std::vector<Grain> original;  ///< every grain as generated (ids, diameters, masses)
+  std::vector<SectionTable>
+      sections;  ///< one for each number of sections asked for, or of the cells of a half cone
   std::optional<ReposeAngle> repose;           ///< repose test
   std::optional<double> rebound_height;        ///< drop test, m
   std::vector<std::array<double, 2>> profile;  ///< slope profile (x, z) m: surface along the dump axis
-  std::optional<double> slope_angle;           ///< degrees, fitted to the middle of the profile
+  std::optional<double> slope_angle;           ///< degrees, fitted to the middle of the slope
 };
 
 /// A printed value of the thesis.
@@ -50,6 +51,14 @@ struct ReferenceValue {
   std::string source;    ///< table or line of the source
   int dumps = 0;         ///< number of dumps in the pile it was read from; 0: not stated
 };
+
+/// Into how many sections the slope of a printed case was cut: told by the names top, middle, bottom (3) or
+/// by the case's name (cm_field_3sec, qb_field_5sec); 6 otherwise (thesis, chapter 6).
+int section_count(const ReferenceValue& reference);
+
+/// Whether a printed value is one that a mean can be held against; bounds (min, max, lt ...) and medians are
+/// not.
+bool is_value(const ReferenceValue& reference);
 
 /// A simulated value held against a printed one.
 struct Comparison {
@@ -67,7 +76,7 @@ struct RunResult {
   std::vector<SeedResult> seeds;
   std::vector<Comparison> comparison;
   std::vector<std::string> notes;  ///< warnings to the reader: overlaps above 10 %, lost mass, not at rest
-  double bench_height = 0;         ///< m, end dumping
+  double bench_height = 0;         ///< m; 0 without a bench
   double wall_seconds = 0;         ///< of the whole command
 };
 

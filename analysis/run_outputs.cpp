@@ -43,7 +43,8 @@ std::vector<std::string> outputs_of(const std::string& experiment) {
     return {"angle_deg", "height_over_radius_deg", "half_coverage_deg", "height_m", "radius_m", "runaways"};
   if (experiment == "drop_test") return {"rebound_height_m"};
   std::vector<std::string> names{"slope_angle_deg"};
-  for (const SectionField& field : section_fields()) names.push_back(std::string(field.name) + "_S1");
+  for (const SectionField& field : section_fields())
+    names.push_back(fmt::format("{}_{}", field.name, experiment == "bucket_dump" ? "top" : "S1"));
   return names;
 }
 
@@ -55,14 +56,22 @@ bool may_give(const std::string& experiment, const std::string& output) {
   if (std::find(names.begin(), names.end(), output) != names.end()) return true;
   if (std::find(common.begin(), common.end(), output) != common.end()) return true;
   if (!has_sections(experiment)) return false;
-  const auto section = output.rfind('_');  // chi_S6, d50_m_S1
-  return section != std::string::npos &&
-         std::find(names.begin(), names.end(), output.substr(0, section) + "_S1") != names.end();
+  const auto under = output.rfind('_');  // chi_S6, d50_m_S1, chi_bottom
+  if (under == std::string::npos) return false;
+  const std::string section = output.substr(under + 1);
+  const bool cell = experiment == "bucket_dump";
+  const bool named = cell ? section == "middle" || section == "bottom"
+                          : section.size() > 1 && section[0] == 'S' &&
+                                section.find_first_not_of("0123456789", 1) == std::string::npos;
+  return named && std::find(names.begin(), names.end(), output.substr(0, under) + (cell ? "_top" : "_S1")) !=
+                      names.end();
 }
 
 std::string outputs_given(const std::string& experiment) {
   return fmt::format("{}, {}", fmt::join(outputs_of(experiment), ", "), fmt::join(common_outputs(), ", ")) +
-         (has_sections(experiment) ? "; S2, S3 and so on alike" : "");
+         (experiment == "bucket_dump" ? "; middle and bottom alike"
+          : has_sections(experiment)  ? "; S2, S3 and so on alike"
+                                      : "");
 }
 
 std::map<std::string, double> run_outputs(const std::string& summary) {

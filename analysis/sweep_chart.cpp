@@ -89,7 +89,7 @@ void draw(const ContourMap& picture, const std::filesystem::path& file) {
   std::string palette;
   for (int k = 0; k <= 8; ++k)
     palette += fmt::format("{}{} '#{:06x}'", k == 0 ? "" : ", ", k, viridis(k / 8.0));
-  const int fine = nodes < 400 ? 20 : 1;  // pieces of a cell
+  const int fine = nodes < 400 ? 10 : 1;  // pieces of a cell
   script += chart_terminal(picture.beside ? 2 * kWidth - 60 : kWidth, kHeight);
   script += fmt::format(
       "set palette defined ({})\nset cblabel {}\nset cbrange [{}:{}]\nset view map\nset pm3d interpolate "

@@ -85,8 +85,9 @@ bool is_good(const std::optional<scree::StoredResult>& result) {
 
 std::string why_left_out(const std::optional<scree::StoredResult>& result) {
   return !result                                  ? "it was not done"
-         : result->state == scree::RunState::done ? "its pile did not come to rest"
-                                                  : result->message;
+         : result->state != scree::RunState::done ? result->message
+         : !result->at_rest()                     ? "its pile did not come to rest"
+                                                  : "its pile does not give the number asked for";
 }
 
 // Does the simulations of a calibration.
@@ -279,6 +280,17 @@ int run_equivalence(const CalibrateOptions& options) {
   for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
   if (!loaded.errors.empty()) return kBadInput;
   const scree::EquivalenceSpec& spec = loaded.spec;
+  const scree::ScenarioResult first = scree::load_scenario(spec.scenario, spec.fixed, asset_dir());
+  if (!first.errors.empty()) {
+    fmt::print(stderr, "{}\n", first.errors.front().text());
+    return kBadInput;
+  }
+  const std::string type(scree::experiment_type(first.scenario));
+  if (!scree::may_give(type, spec.output)) {
+    fmt::print(stderr, "output '{}': a scenario of type {} does not give it; it gives {}\n", spec.output,
+               type, scree::outputs_given(type));
+    return kBadInput;
+  }
   const fs::path out = options.out.empty() ? free_run_folder(spec.name) : options.out;
   if (!prepare_folder(out, options.force)) return kBadInput;
   const std::unique_ptr<scree::ResultsStore> store = open_store(options.store, false);
@@ -309,10 +321,15 @@ int run_equivalence(const CalibrateOptions& options) {
   }
   fmt::print("{:>6} {:>6} {:>14} {:>9} {:>8} {:>9} {:>8} {:>11}\n", "mu", "mu_r", "local_damping", "rrlinear",
              "impulse", "friction", "rolling", "");
-  for (const scree::EquivalenceNode& node : nodes)
-    fmt::print("{:>6g} {:>6g} {:>14g} {:>9.2f} {:>8.2f} {:>9.4f} {:>8.4f}{}\n", node.mu, node.mu_r,
-               node.local_damping, node.angle_rrlinear, node.angle_impulse, node.friction, node.rolling,
-               node.found ? "" : "   left out");
+  for (const scree::EquivalenceNode& node : nodes) {
+    fmt::print("{:>6g} {:>6g} {:>14g} {:>9.2f} ", node.mu, node.mu_r, node.local_damping,
+               node.angle_rrlinear);
+    if (node.friction > 0)
+      fmt::print("{:>8.2f} {:>9.4f} {:>8.4f}", node.angle_impulse, node.friction, node.rolling);
+    else
+      fmt::print("{:>8} {:>9} {:>8}", "-", "-", "-");
+    fmt::print("{}\n", node.found ? "" : "   left out");
+  }
   const fs::path table = out / "equivalent.csv";
   scree::write_text_file(
       table,
@@ -322,7 +339,8 @@ int run_equivalence(const CalibrateOptions& options) {
                        spec.output, spec.scenario.filename().string(), spec.within, spec.seeds.size()),
            fmt::format("Made by scree {} ({}): scree calibrate {}.", SCREE_VERSION, SCREE_REVISION,
                        options.file.filename().string())}));
-  fmt::print("\ntable: {}; engine impulse takes it from assets/impulse/equivalent.csv\n", table.string());
+  fmt::print("\ntable: {}; copied to assets/impulse/equivalent.csv, engine impulse takes it\n",
+             table.string());
   return kOk;
 }
 

@@ -83,7 +83,9 @@ int main(int argc, char** argv) {
   sweep_app
       ->add_option("--from", sweep.from,
                    "Show the runs of this exported table instead; run nothing, no store")
-      ->excludes("--store");
+      ->excludes("--store")
+      ->excludes("--again")
+      ->excludes("--jobs");
   sweep_app->add_option("--export", sweep.csv, "Write every run and its numbers to a CSV file");
   sweep_app->add_option("--plot", sweep.plot, "Draw the output over one or two parameters (.svg)");
   sweep_app->add_option("--output", sweep.output,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "analysis/half_cone.h"
 #include "analysis/slope_profile.h"
@@ -37,14 +38,18 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
   r.interrupted = outcome.interrupted;
   r.final_state = std::move(outcome.final_state);
   r.original = std::move(outcome.original);
+  // What is not yet dumped when the user ends a run is in the container, not in the pile.
+  int last = 0;
+  for (const Grain& g : r.final_state.grains) last = std::max(last, g.dump);
+  const auto dumped_until = [&](int dumps) {
+    std::vector<Grain> dumped;
+    for (const Grain& g : r.original)
+      if (g.dump <= dumps) dumped.push_back(g);
+    return dumped;
+  };
   if (const BenchSpec* bench = bench_of(scenario)) {
-    // What is not yet dumped when the user ends a run is in the container, not in the pile.
-    int last = 0;
-    for (const Grain& g : r.final_state.grains) last = std::max(last, g.dump);
     const auto add_tables = [&](const std::vector<Grain>& pile, int dumps) {
-      std::vector<Grain> dumped;
-      for (const Grain& g : r.original)
-        if (g.dump <= dumps) dumped.push_back(g);
+      const std::vector<Grain> dumped = dumped_until(dumps);
       if (dumped.empty()) return;
       std::vector<int> numbers{scenario.output.sections};
       numbers.insert(numbers.end(), scenario.output.further_sections.begin(),
@@ -59,9 +64,13 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
     r.profile = slope_profile(r.final_state.grains);
     r.slope_angle = slope_angle(r.profile, bench->height);
   } else if (std::holds_alternative<BucketDump>(scenario.experiment)) {
-    const HalfCone cone = analyse_half_cone(r.final_state.grains, r.original);
-    r.sections.push_back(cone.surface);
-    r.slope_angle = cone.shape.angle;
+    try {
+      const HalfCone cone = analyse_half_cone(r.final_state.grains, dumped_until(last));
+      r.sections.push_back(cone.surface);
+      r.slope_angle = cone.shape.angle;
+    } catch (const std::invalid_argument&) {
+      // A run that was ended early may have no cone yet.
+    }
   } else if (outcome.rebound_height) {
     r.rebound_height = outcome.rebound_height;
   } else if (!r.final_state.grains.empty()) {
@@ -121,16 +130,16 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
     result.notes.push_back(fmt::format(
         "{} contacts with meshes were left out because a sphere touched more than {} surfaces at once",
         crowded, kMeshContactSlots));
-  if (left_out > 0)
+  if (left_out > 0 && bench_of(scenario))
     result.notes.push_back(fmt::format("{:.1f} t lie above the crest's height and belong to no section",
                                        left_out / 1000 / static_cast<double>(result.seeds.size())));
   if (scenario.bullet)
     result.notes.push_back(
-        scenario.bullet->error_deg > 0
+        scenario.bullet->error_deg
             ? fmt::format("engine impulse: Bullet's friction {:.3g} and rolling friction {:.3g} stand for mu "
                           "and mu_r; "
-                          "in the laboratory repose test they give rrlinear's angle within {:.1f} degrees",
-                          scenario.bullet->friction, scenario.bullet->rolling, scenario.bullet->error_deg)
+                          "where they were found they give rrlinear's repose angle within {:.1f} degrees",
+                          scenario.bullet->friction, scenario.bullet->rolling, *scenario.bullet->error_deg)
             : "engine impulse: Bullet's friction and rolling friction were set by hand; nothing is known of "
               "how "
               "near the result is to rrlinear's");

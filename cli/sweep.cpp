@@ -197,12 +197,14 @@ int run_sweep(const SweepOptions& options) {
     return kBadInput;
   }
   if (!options.from.empty()) {
+    std::vector<PointResults> points;
     try {
-      return show(options, sweep, scree::read_sweep_csv(sweep, options.from));
+      points = scree::read_sweep_csv(sweep, options.from);
     } catch (const std::runtime_error& error) {
       fmt::print(stderr, "{}\n", error.what());
       return kBadInput;
     }
+    return show(options, sweep, points);
   }
 
   const std::vector<scree::RunRequest> requests = requests_of(sweep);

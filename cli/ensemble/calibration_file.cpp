@@ -40,8 +40,7 @@ void read_passing_curve(const YamlNode& item, const fs::path& file, const fs::pa
     const Grading grading = read_grading((file.parent_path() / path).lexically_normal());
     for (const int percent : kCurveDiameters) {
       const double x = percent / 100.0;
-      const double spread =
-          0.5 * (grading.diameter(std::min(1.0, x + u)) - grading.diameter(std::max(0.0, x - u)));
+      const double spread = 0.5 * (grading.diameter(x + u) - grading.diameter(x - u));
       spec.targets.push_back({fmt::format("d{}_m_{}", percent, name), grading.diameter(x), spread, scenario});
     }
   } catch (const std::runtime_error& error) {

@@ -106,13 +106,13 @@ double mean_of(const std::vector<double>& values) {
   return finite.empty() ? nan : mean_std(finite).mean;
 }
 
-std::vector<double> rising(const YamlNode& nodes, const char* key, double otherwise, FileReader& reader) {
+std::vector<double> rising(const YamlNode& nodes, const char* key, FileReader& reader) {
   const YamlEntry* entry = nodes.find(key);
-  if (entry == nullptr) {
-    if (std::isnan(otherwise)) reader.fail(nodes.place, fmt::format("nodes: {} is missing", key));
-    return {otherwise};
-  }
   std::vector<double> values;
+  if (entry == nullptr) {
+    reader.fail(nodes.place, fmt::format("nodes: {} is missing", key));
+    return values;
+  }
   if (entry->value.kind != YamlKind::sequence || entry->value.items.empty())
     reader.fail(entry->value.place, fmt::format("{}: a list of numbers is expected", key));
   else
@@ -150,9 +150,9 @@ EquivalenceSpecResult load_equivalence(const fs::path& file) {
   spec.output = output == nullptr ? "angle_deg" : reader.scalar(output->value, "output").value_or("");
   if (const YamlNode* nodes = reader.map_at(*part, "nodes", true, "a map of lists of numbers")) {
     reader.allow(*nodes, {"material.mu", "material.mu_r", "material.local_damping"}, " in nodes");
-    spec.mu = rising(*nodes, "material.mu", nan, reader);
-    spec.mu_r = rising(*nodes, "material.mu_r", nan, reader);
-    spec.local_damping = rising(*nodes, "material.local_damping", 0.4, reader);
+    spec.mu = rising(*nodes, "material.mu", reader);
+    spec.mu_r = rising(*nodes, "material.mu_r", reader);
+    spec.local_damping = rising(*nodes, "material.local_damping", reader);
   }
   if (const YamlNode* search =
           reader.map_at(*part, "search", true, "a map from keys to {from: .., to: ..}")) {
@@ -173,6 +173,14 @@ EquivalenceSpecResult load_equivalence(const fs::path& file) {
   integer("rounds", spec.rounds, 1, 20);
   if (const YamlEntry* within = part->find("within"))
     spec.within = reader.number(within->value, "within").value_or(spec.within);
+  if (!(spec.within > 0)) reader.fail(part->place, "within: degrees, more than 0");
+  const double most =
+      spec.points + static_cast<double>(spec.mu.size() * spec.mu_r.size() * spec.seeds.size()) * spec.rounds;
+  if (most > static_cast<double>(Emulator::kMostPoints))
+    reader.fail(
+        part->place,
+        fmt::format("up to {} simulations with Bullet (points, nodes, seeds, rounds); {} are the most", most,
+                    Emulator::kMostPoints));
   return result;
 }
 

@@ -124,7 +124,8 @@ void name_cases(const YamlEntry& entry, const fs::path& asset_dir, Sweep& sweep,
     point.compare = *pattern;
     for (std::size_t k = 0; k < sweep.parameters.size(); ++k) {
       const std::string key = "{" + sweep.parameters[k] + "}";
-      for (std::size_t at; (at = point.compare.find(key)) != std::string::npos;)
+      for (std::size_t at = 0; (at = point.compare.find(key, at)) != std::string::npos;
+           at += point.values[k].size())
         point.compare.replace(at, key.size(), point.values[k]);
     }
     if (!cases.contains(point.compare))

@@ -34,8 +34,8 @@ struct SweepResult {
 ///   seeds: [1, 2, 3]                default: those of the scenario
 ///   set: {material.alpha: 0.4}      further values that differ from the scenario's
 ///   ties: {material.mu_r: material.mu}   the first key takes the value of the second
-///   compare: lab_repose_{material.mu}_{material.mu_r}   case of printed values that each point is held
-///   against design:
+///   compare: lab_repose_{material.mu}_{material.mu_r}   printed case of each point
+///   design:
 ///     type: grid | list | latin_hypercube | sobol
 ///     parameters: {material.mu: [0.1, 0.2]}          grid: every combination
 ///     points: [{material.mu: 0.2}, ...]               list

@@ -61,12 +61,15 @@ bool same_value(const std::string& a, const std::string& b) {
   return x && y ? *x == *y : a == b;
 }
 
-bool is_reading_of(const std::string& output, const ReferenceValue& printed) {
+// `sections`: into how many the slope of the runs is cut.
+bool is_reading_of(const std::string& output, const ReferenceValue& printed, int sections) {
+  if (!is_value(printed)) return false;
   const std::string &quantity = printed.quantity, &section = printed.section;
   if (quantity == "angle")
     return output == "angle_deg" || output == "height_over_radius_deg" || output == "half_coverage_deg";
   if (quantity == "slope_angle") return output == "slope_angle_deg";
   if (quantity == "rebound_height") return output == "rebound_height_m";
+  if (section_count(printed) != sections) return false;
   return output == quantity + "_" + section || output == quantity + "_m_" + section;
 }
 
@@ -173,9 +176,12 @@ std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const fs::path& fil
 
 SweepComparison compare_sweep(const std::vector<PointResults>& points, const std::string& output,
                               const std::vector<ReferenceValue>& reference) {
+  const std::set<std::string> names = outputs_of(points);
+  const auto sections = static_cast<int>(std::count_if(
+      names.begin(), names.end(), [](const std::string& name) { return name.starts_with("mass_t_"); }));
   std::map<std::string, const ReferenceValue*> printed;  // by case
   for (const ReferenceValue& value : reference) {
-    if (!is_reading_of(output, value)) continue;
+    if (!is_reading_of(output, value, sections)) continue;
     const ReferenceValue*& here = printed[value.case_name];
     if (here == nullptr || value.kind == "pfc3d") here = &value;
   }

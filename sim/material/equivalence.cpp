@@ -115,7 +115,7 @@ std::optional<Equivalence::Settings> Equivalence::at(double mu, double mu_r, dou
     if (!nodes_[node]) return std::nullopt;
     result.friction += weight * nodes_[node]->friction;
     result.rolling += weight * nodes_[node]->rolling;
-    result.error_deg = std::max(result.error_deg, nodes_[node]->error_deg);
+    result.error_deg = std::max(result.error_deg.value_or(0), nodes_[node]->error_deg.value());
   }
   return result;
 }

@@ -13,9 +13,10 @@ namespace scree {
 class Equivalence {
  public:
   struct Settings {
-    double friction = 0;   ///< Bullet's friction coefficient
-    double rolling = 0;    ///< Bullet's rolling friction over the effective radius
-    double error_deg = 0;  ///< largest difference of the repose angles at the nodes around, degrees
+    double friction = 0;  ///< Bullet's friction coefficient
+    double rolling = 0;   ///< Bullet's rolling friction over the effective radius
+    /// Largest difference of the repose angles at the nodes around, degrees; none when set by hand.
+    std::optional<double> error_deg;
   };
 
   /// Reads CSV, `#` comment lines, header `mu,mu_r,local_damping,friction,rolling,angle_rrlinear_deg,

@@ -35,7 +35,7 @@ RunOutcome run_bucket_dump(const Scenario& scenario, const BucketDump& e, std::u
                            const RunHooks& hooks) {
   const double r = e.floor_radius, back = e.diameter + e.height;
   Stage stage(scenario, seed, threads, hooks, {-back, -r, -0.5 * e.wall_height},
-              {r, r, 2 * e.wall_height + 3 * e.height});
+              {r, r, 2 * e.wall_height + 3 * e.height + e.diameter});
   RockWorld& world = stage.world();
   const Pose pose = bucket_pose(e);
   const Grading grading = read_grading(scenario.grading_file);
@@ -72,9 +72,9 @@ RunOutcome run_bucket_dump(const Scenario& scenario, const BucketDump& e, std::u
     world.remove_mesh(lid);
     if (!stage.advance_to_rest("emptying", share + 0.1 * part, share + part)) return stage.finish();
     world.remove_mesh(bucket);
+    if (!stage.advance_to_rest("bucket leaves", share + part, share + part)) return stage.finish();
     stage.dump_done(dump, e.buckets);
   }
-  if (!stage.advance_to_rest("coming to rest", 1.0, 1.0)) return stage.finish();
   return stage.finish();
 }
 

@@ -15,8 +15,7 @@ namespace {
 
 constexpr int kTries = 400;
 constexpr double kGrowth = 1.02;
-constexpr double kDensest =
-    0.6;  // solid fraction; no wide grading gets denser when spheres are put at random
+constexpr double kDensest = 0.6;  // solid fraction; at random few gradings get denser
 
 // Places the spheres one after another where they touch none before; false when one finds no place.
 bool fill(Load& load, const LoadRegion& region, const std::vector<double>& diameters, Random random) {

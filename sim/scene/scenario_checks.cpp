@@ -245,7 +245,7 @@ void find_bullet_settings(Scenario& s, const fs::path& asset_dir, ReadNotes& not
   if (s.engine != EngineKind::impulse) return;
   if (!notes.good({&s.material.mu, &s.material.mu_r, &s.material.local_damping, &friction, &rolling})) return;
   if (friction && rolling) {
-    s.bullet = Equivalence::Settings{*friction, *rolling, 0};
+    s.bullet = Equivalence::Settings{*friction, *rolling, std::nullopt};
     return;
   }
   const char* way_out = "set numerics.impulse_friction and numerics.impulse_rolling, or take engine rrlinear";
@@ -264,6 +264,7 @@ void find_bullet_settings(Scenario& s, const fs::path& asset_dir, ReadNotes& not
            fmt::format("engine impulse: {}; {}", error.what(), way_out));
   }
   if (!s.bullet) return;
+  if (friction || rolling) s.bullet->error_deg.reset();
   s.bullet->friction = friction.value_or(s.bullet->friction);
   s.bullet->rolling = rolling.value_or(s.bullet->rolling);
 }

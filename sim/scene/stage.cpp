@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "sim/material/grading.h"
 #include "sim/scene/scenario_keys.h"
 
 namespace scree {
@@ -26,6 +27,7 @@ Stage::Stage(const Scenario& scenario, std::uint64_t seed, int threads, const Ru
     settings.material.mu = scenario.bullet.value().friction;
     settings.material.mu_r = scenario.bullet.value().rolling;
   }
+  settings.smallest_diameter = read_grading(scenario.grading_file).min_diameter();
   settings.domain_low = domain_low;
   settings.domain_high = domain_high;
   settings.time_step_safety = scenario.numerics.time_step_safety;
@@ -42,11 +44,11 @@ Surface Stage::surface(const std::optional<double>& mu, const std::optional<doub
   const Material& rock = scenario_.material;
   if (!scenario_.bullet) return {mu.value_or(rock.mu), mu_r.value_or(rock.mu_r)};
   // A surface keeps its ratio to the rock.
-  const auto ratio = [](const std::optional<double>& own, double of_rock) {
-    return own && of_rock > 0 ? *own / of_rock : 1.0;
+  const auto bullets = [](const std::optional<double>& own, double of_rock, double bullet) {
+    return !own ? bullet : of_rock > 0 ? *own / of_rock * bullet : *own;
   };
-  return {ratio(mu, rock.mu) * scenario_.bullet->friction,
-          ratio(mu_r, rock.mu_r) * scenario_.bullet->rolling};
+  return {bullets(mu, rock.mu, scenario_.bullet->friction),
+          bullets(mu_r, rock.mu_r, scenario_.bullet->rolling)};
 }
 
 TriangleMesh Stage::read(const std::filesystem::path& mesh, double scale) const {

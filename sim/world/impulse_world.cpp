@@ -13,9 +13,9 @@ namespace {
 // kg in one unit of mass of Bullet: the impulse of 27 t at 15 m/s is then 0.04.
 constexpr double kMassUnit = 1e7;
 
-// How far apart shapes may be that Bullet takes for touching, and by how much it fattens their boxes, over the
-// smallest radius. Bullet's own 0.02 and 0.05 m are several diameters of the laboratory's smallest spheres: each
-// would be paired with hundreds.
+// How far apart contact points may be, and by how much boxes are fattened, over the smallest radius. Bullet's
+// own margin of 0.05 m is several diameters of the laboratory's smallest spheres: each would be paired with
+// hundreds.
 constexpr double kReach = 0.1;
 
 const btSphereShape* sphere_of(const btCollisionObject* object) {
@@ -55,6 +55,10 @@ ImpulseWorld::ImpulseWorld(const WorldSettings& settings) : RockWorld(settings) 
   gCalculateCombinedRollingFrictionCallback = combined_rolling;
   gCalculateCombinedSpinningFrictionCallback = no_restitution;
   gCalculateCombinedRestitutionCallback = no_restitution;
+  // Lengths in metres, not shares of each shape's size.
+  auto& pairs = static_cast<btCollisionDispatcher&>(*getDispatcher());
+  pairs.setDispatcherFlags(pairs.getDispatcherFlags() &
+                           ~btCollisionDispatcher::CD_USE_RELATIVE_CONTACT_BREAKING_THRESHOLD);
   getSolverInfo().m_numIterations = settings_.impulse_iterations;
   getSolverInfo().m_restitutionVelocityThreshold = 0;
   setForceUpdateAllAabbs(false);  // what stands still keeps its box
@@ -67,7 +71,6 @@ std::unique_ptr<RockWorld> make_impulse_world(const WorldSettings& settings) {
 void ImpulseWorld::prepare() {
   changed_ = false;
   movable_.clear();
-  double smallest = 1e300;
   for (int i = 0; i < spheres_.size(); ++i) {
     if (spheres_.lost[i]) continue;
     btRigidBody& body = *bodies_[static_cast<std::size_t>(spheres_.id[i])];
@@ -79,17 +82,18 @@ void ImpulseWorld::prepare() {
     body.setMassProps(mass, btVector3(1, 1, 1) * (spheres_.spin[i].w / kMassUnit));
     body.setGravity(to_bullet(settings_.gravity));
     body.updateInertiaTensor();
-    smallest = std::min(smallest, spheres_.place[i].w);
     movable_.push_back(i);
   }
-  if (!movable_.empty()) reach_ = kReach * smallest;
   for (const auto& mesh : meshes_)
     if (mesh) mesh->body().setRollingFriction(mesh->surface().mu_r);
 }
 
 void ImpulseWorld::advance_to(double end) {
   if (changed_) prepare();
-  gContactBreakingThreshold = gDbvtMargin = reach_;  // globals of Bullet that other worlds may have set
+  // Globals of Bullet; a world of other rock may have set them. Worlds of the same rock want the same.
+  const double reach = kReach * 0.5 * settings_.smallest_diameter;
+  if (gContactBreakingThreshold != reach) gContactBreakingThreshold = reach;
+  if (gDbvtMargin != reach) gDbvtMargin = reach;
   while (time_ < end) {
     const double left = end - time_;
     const bool last = left <= settings_.impulse_time_step * (1 + 1e-6);

@@ -1,12 +1,11 @@
 #pragma once
 // The second engine: Bullet's sequential-impulse solver on the same scene.
 //
-// Friction and rolling friction are those of the material, combined per contact: the rolling coefficient of
-// Bullet is a length, so it is mu_r times the effective radius of the pair. Bullet limits a rolling impulse
-// at min(c lambda, c), which is right only while the normal impulse lambda is below 1; masses are therefore
-// given to Bullet in units of kMassUnit. Local damping takes alpha |dv| from every component of the change of
-// velocity of a step, never reversing the motion. Nothing sleeps. The parameters are not calibrated: repose
-// angles of this engine are its own.
+// Friction and rolling friction are given in place of the material's mu and mu_r, combined per contact: the
+// rolling coefficient of Bullet is a length, so it is multiplied by the effective radius of the pair. Bullet
+// limits a rolling impulse at min(c lambda, c), which is right only while the normal impulse lambda is below
+// 1; masses are therefore given to Bullet in units of kMassUnit. Local damping takes alpha |dv| from every
+// component of the change of velocity of a step, never reversing the motion. Nothing sleeps.
 #include "sim/world/rock_world.h"
 
 namespace scree {
@@ -26,7 +25,6 @@ class ImpulseWorld final : public RockWorld {
   void prepare();
   void read_back();
   bool changed_ = true;
-  double reach_ = 0.02;  // m, from how far apart Bullet takes two shapes for touching
   std::vector<int> movable_;  // indices
 };
 

@@ -23,8 +23,9 @@
 
 namespace scree {
 
-/// What a contact remembers, as acting on its owner. Single precision: its rounding, 6e-8 of the force, is far
-/// below what local damping leaves unbalanced (Rest tests), and half of the memory traffic of a step is saved.
+/// What a contact remembers, as acting on its owner. Single precision: its rounding, 6e-8 of the force, is
+/// far below what local damping leaves unbalanced (Rest tests), and half of the memory traffic of a step is
+/// saved.
 struct alignas(32) ContactMemory {
   float shear[4] = {0, 0, 0, 0};    ///< N; the last is not used
   float rolling[4] = {0, 0, 0, 0};  ///< N m; the last is not used

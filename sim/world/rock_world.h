@@ -30,11 +30,12 @@ struct WorldSettings {
   Material material;
   Vec3 gravity{0, 0, -9.81};                                                  ///< m/s2
   Vec3 domain_low = Vec3::Constant(-1e6), domain_high = Vec3::Constant(1e6);  ///< m; a sphere outside is lost
-  double time_step_safety = 0.8;  ///< share of the stable step (rrlinear)
-  double fixed_time_step = 0;     ///< s; above 0 it is used instead (rrlinear; for tests)
-  bool sleep = false;             ///< spheres at rest cost nothing until disturbed (rrlinear; see sleep.h)
-  double wake_tolerance = 0.1;    ///< share of (weight + mean contact force) that wakes a sleeper (rrlinear)
-  int threads = 1;                ///< worker threads of this world (rrlinear)
+  double time_step_safety = 0.8;   ///< share of the stable step (rrlinear)
+  double fixed_time_step = 0;      ///< s; above 0 it is used instead (rrlinear; for tests)
+  bool sleep = false;              ///< spheres at rest cost nothing until disturbed (rrlinear; see sleep.h)
+  double wake_tolerance = 0.1;     ///< share of (weight + mean contact force) that wakes a sleeper (rrlinear)
+  int threads = 1;                 ///< worker threads of this world (rrlinear)
+  double smallest_diameter = 0.2;  ///< m, of the rock: how near is near (impulse)
   double impulse_time_step = 1e-3;  ///< s (impulse)
   int impulse_iterations = 20;      ///< solver iterations (impulse)
 };

@@ -102,7 +102,8 @@ TEST(EquivalenceFit, WrongFilesAreToldWithTheirPlace) {
     const auto errors = load_equivalence(file).errors;
     return errors.empty() ? std::string() : errors.front().text();
   };
-  const std::string nodes = "  nodes: {material.mu: [0.1, 0.2], material.mu_r: [0.1, 0.2]}\n";
+  const std::string damping = ", material.local_damping: [0.4]}\n";
+  const std::string nodes = "  nodes: {material.mu: [0.1, 0.2], material.mu_r: [0.1, 0.2]" + damping;
   const std::string search =
       "  search: {numerics.impulse_friction: {from: 0.1, to: 1}, numerics.impulse_rolling: {from: 0.1, to: "
       "1}}\n";
@@ -111,9 +112,15 @@ TEST(EquivalenceFit, WrongFilesAreToldWithTheirPlace) {
   EXPECT_THAT(first_error(nodes), HasSubstr("'search' is missing"));
   EXPECT_THAT(first_error(nodes + "  search: {numerics.impulse_friction: {from: 0.1, to: 1}}\n"),
               HasSubstr("numerics.impulse_friction and numerics.impulse_rolling are needed"));
-  EXPECT_THAT(first_error("  nodes: {material.mu: [0.2, 0.1], material.mu_r: [0.1]}\n" + search),
+  EXPECT_THAT(first_error("  nodes: {material.mu: [0.2, 0.1], material.mu_r: [0.1]" + damping + search),
               HasSubstr("material.mu: the numbers must rise"));
-  EXPECT_THAT(first_error("  nodes: {material.mu: [0.2]}\n" + search), HasSubstr("material.mu_r is missing"));
+  EXPECT_THAT(first_error("  nodes: {material.mu: [0.2]" + damping + search),
+              HasSubstr("material.mu_r is missing"));
+  EXPECT_THAT(first_error("  nodes: {material.mu: [0.2], material.mu_r: [0.1]}\n" + search),
+              HasSubstr("material.local_damping is missing"));
+  EXPECT_THAT(first_error(nodes + search + "  within: 0\n"), HasSubstr("within: degrees, more than 0"));
+  EXPECT_THAT(first_error(nodes + search + "  points: 200\n  rounds: 20\n  seeds: 3\n"),
+              HasSubstr("unknown key 'seeds'"));
   EXPECT_THAT(first_error(nodes + search + "  point: 3\n"), HasSubstr("unknown key 'point'"));
   fs::remove(file);
 }

@@ -51,6 +51,7 @@ class SweepTable : public testing::Test {
     v.section = "whole";
     v.kind = kind;
     v.value = value;
+    v.relation = "eq";
     return v;
   }
 

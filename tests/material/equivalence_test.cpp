@@ -36,11 +36,11 @@ TEST_F(EquivalenceTable, LinearBetweenNodesAndNoneOutside) {
   ASSERT_TRUE(middle);
   EXPECT_DOUBLE_EQ(middle->friction, 0.25);
   EXPECT_DOUBLE_EQ(middle->rolling, 0.4);
-  EXPECT_DOUBLE_EQ(middle->error_deg, 1.5);
+  EXPECT_DOUBLE_EQ(middle->error_deg.value(), 1.5);
   const auto corner = table.at(0.3, 0.4, 0.4);
   ASSERT_TRUE(corner);
   EXPECT_DOUBLE_EQ(corner->friction, 0.35);
-  EXPECT_DOUBLE_EQ(corner->error_deg, 0);  // the node's own
+  EXPECT_DOUBLE_EQ(corner->error_deg.value(), 0);  // the node's own
   EXPECT_FALSE(table.at(0.31, 0.3, 0.4));
   EXPECT_FALSE(table.at(0.2, 0.1, 0.4));
   EXPECT_FALSE(table.at(0.2, 0.3, 0.5));

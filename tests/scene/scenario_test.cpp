@@ -275,8 +275,9 @@ TEST(Impulse, TakesWhatIsEquivalentUnlessTold) {
   };
   EXPECT_DOUBLE_EQ(bullet("").friction, 0.35);
   EXPECT_DOUBLE_EQ(bullet("").rolling, 0.5);
-  EXPECT_DOUBLE_EQ(bullet("").error_deg, 1);
+  EXPECT_DOUBLE_EQ(bullet("").error_deg.value(), 1);
   EXPECT_DOUBLE_EQ(bullet("numerics: {impulse_friction: 0.9}\n").friction, 0.9);
+  EXPECT_FALSE(bullet("numerics: {impulse_friction: 0.9}\n").error_deg);
   EXPECT_DOUBLE_EQ(bullet("numerics: {impulse_friction: 0.9, impulse_rolling: 0.8}\n").rolling, 0.8);
   EXPECT_DOUBLE_EQ(bullet("numerics: {impulse_friction: equivalent}\n").friction, 0.35);
   EXPECT_FALSE(folder.load("grading: CM0\nmaterial: {mu: 0.9, mu_r: 0.9}\nexperiment: {type: end_dump}\n")

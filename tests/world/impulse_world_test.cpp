@@ -92,7 +92,9 @@ TEST(ImpulseWorld, FixedBallsStayAndCarry) {
 
 // Bullet pairs what is nearer than 5 cm unless told otherwise: each of these with hundreds.
 TEST(ImpulseWorld, SmallSpheresArePairedWithTheirNeighboursAlone) {
-  const auto world = make_impulse_world(WorldSettings());
+  WorldSettings settings;
+  settings.smallest_diameter = 0.008;
+  const auto world = make_impulse_world(settings);
   std::vector<NewSphere> spheres;
   for (int i = 0; i < 1000; ++i)
     spheres.push_back(ball({0.009 * (i % 10), 0.009 * (i / 10 % 10), 0.005 + 0.009 * (i / 100)}, 0.004));
