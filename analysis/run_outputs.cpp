@@ -48,8 +48,6 @@ std::vector<std::string> outputs_of(const std::string& experiment) {
   return names;
 }
 
-}  // namespace
-
 bool may_give(const std::string& experiment, const std::string& output) {
   const std::vector<std::string> names = outputs_of(experiment);
   const auto& common = common_outputs();
@@ -67,11 +65,15 @@ bool may_give(const std::string& experiment, const std::string& output) {
                       names.end();
 }
 
-std::string outputs_given(const std::string& experiment) {
-  return fmt::format("{}, {}", fmt::join(outputs_of(experiment), ", "), fmt::join(common_outputs(), ", ")) +
-         (experiment == "bucket_dump" ? "; middle and bottom alike"
-          : has_sections(experiment)  ? "; S2, S3 and so on alike"
-                                      : "");
+}  // namespace
+
+std::string why_not_given(const std::string& experiment, const std::string& output) {
+  if (may_give(experiment, output)) return {};
+  return fmt::format("a scenario of type {} does not give it; it gives {}, {}{}", experiment,
+                     fmt::join(outputs_of(experiment), ", "), fmt::join(common_outputs(), ", "),
+                     experiment == "bucket_dump" ? "; middle and bottom alike"
+                     : has_sections(experiment)  ? "; S2, S3 and so on alike"
+                                                 : "");
 }
 
 std::map<std::string, double> run_outputs(const std::string& summary) {

@@ -12,9 +12,8 @@ namespace scree {
 /// std::runtime_error if it is not a summary.
 std::map<std::string, double> run_outputs(const std::string& summary);
 
-/// Whether a scenario with an experiment of this type (end_dump, push_dump, bucket_dump, repose_lift,
-/// drop_test) gives an output of this name, and what it gives, in words.
-bool may_give(const std::string& experiment, const std::string& output);
-std::string outputs_given(const std::string& experiment);
+/// Empty if a scenario with an experiment of this type (end_dump, push_dump, bucket_dump, repose_lift,
+/// drop_test) gives an output of this name; else a message that says what it gives.
+std::string why_not_given(const std::string& experiment, const std::string& output);
 
 }  // namespace scree

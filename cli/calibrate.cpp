@@ -55,9 +55,8 @@ std::string refusal(const scree::CalibrationSpec& spec) {
       const scree::ScenarioResult loaded = scenario_at(spec, target.scenario, values_at(spec, end));
       if (!loaded.errors.empty()) return loaded.errors.front().text();
       const std::string type(scree::experiment_type(loaded.scenario));
-      if (!scree::may_give(type, target.output))
-        return fmt::format("output '{}': a scenario of type {} does not give it; it gives {}", target.output,
-                           type, scree::outputs_given(type));
+      if (const std::string why = scree::why_not_given(type, target.output); !why.empty())
+        return fmt::format("output '{}': {}", target.output, why);
     }
   }
   return {};
@@ -88,6 +87,21 @@ std::string why_left_out(const std::optional<scree::StoredResult>& result) {
          : result->state != scree::RunState::done ? result->message
          : !result->at_rest()                     ? "its pile did not come to rest"
                                                   : "its pile does not give the number asked for";
+}
+
+// Does what simulates; the exit code if the user ended it or a scenario was refused.
+template <class Work>
+int simulations(const Work& work) {
+  try {
+    work();
+    return kOk;
+  } catch (const scree::CalibrationStopped& stopped) {
+    fmt::print(stderr, "{}\n", stopped.what());
+    return kInterrupted;
+  } catch (const std::invalid_argument& wrong) {
+    fmt::print(stderr, "{}\n", wrong.what());
+    return kBadInput;
+  }
 }
 
 // Does the simulations of a calibration.
@@ -286,9 +300,8 @@ int run_equivalence(const CalibrateOptions& options) {
     return kBadInput;
   }
   const std::string type(scree::experiment_type(first.scenario));
-  if (!scree::may_give(type, spec.output)) {
-    fmt::print(stderr, "output '{}': a scenario of type {} does not give it; it gives {}\n", spec.output,
-               type, scree::outputs_given(type));
+  if (const std::string why = scree::why_not_given(type, spec.output); !why.empty()) {
+    fmt::print(stderr, "output '{}': {}\n", spec.output, why);
     return kBadInput;
   }
   const fs::path out = options.out.empty() ? free_run_folder(spec.name) : options.out;
@@ -296,7 +309,7 @@ int run_equivalence(const CalibrateOptions& options) {
   const std::unique_ptr<scree::ResultsStore> store = open_store(options.store, false);
   if (!store) return kBadInput;
   std::vector<scree::EquivalenceNode> nodes;
-  try {
+  const int ended = simulations([&] {
     nodes = scree::fit_equivalence(spec, [&](const std::vector<scree::EquivalenceRun>& runs) {
       std::vector<std::pair<scree::ScenarioResult, std::uint64_t>> scenarios;
       for (const scree::EquivalenceRun& run : runs)
@@ -312,13 +325,8 @@ int run_equivalence(const CalibrateOptions& options) {
       }
       return values;
     });
-  } catch (const scree::CalibrationStopped& stopped) {
-    fmt::print(stderr, "{}\n", stopped.what());
-    return kInterrupted;
-  } catch (const std::invalid_argument& wrong) {
-    fmt::print(stderr, "{}\n", wrong.what());
-    return kBadInput;
-  }
+  });
+  if (ended != kOk) return ended;
   fmt::print("{:>6} {:>6} {:>14} {:>9} {:>8} {:>9} {:>8} {:>11}\n", "mu", "mu_r", "local_damping", "rrlinear",
              "impulse", "friction", "rolling", "");
   for (const scree::EquivalenceNode& node : nodes) {
@@ -362,15 +370,8 @@ int run_calibrate(const CalibrateOptions& options) {
   if (!store) return kBadInput;
 
   scree::CalibrationResult result;
-  try {
-    result = scree::calibrate(spec, simulator(spec, *store, options));
-  } catch (const scree::CalibrationStopped& stopped) {
-    fmt::print(stderr, "{}\n", stopped.what());
-    return kInterrupted;
-  } catch (const std::invalid_argument& wrong) {
-    fmt::print(stderr, "{}\n", wrong.what());
-    return kBadInput;
-  }
+  const int ended = simulations([&] { result = scree::calibrate(spec, simulator(spec, *store, options)); });
+  if (ended != kOk) return ended;
   const scree::CalibrationAnswer answer = scree::answer_of(spec, result);
   write_tables(spec, result, answer, out);
   write_json(spec, result, answer, out / "calibration.json");

@@ -37,9 +37,8 @@ int run_predict(const PredictOptions& options) {
   const std::string output = options.output.empty() ? "angle_deg" : options.output;
 
   const std::string type(scree::experiment_type(sweep.points.front().scenario));
-  if (!scree::may_give(type, output))
-    return refuse(fmt::format("--output {}: a scenario of type {} does not give it; it gives {}", output,
-                              type, scree::outputs_given(type)));
+  if (const std::string why = scree::why_not_given(type, output); !why.empty())
+    return refuse(fmt::format("--output {}: {}", output, why));
   if (std::ssize(sweep.parameters) > scree::Emulator::kMostDimensions)
     return refuse(fmt::format("{} parameters; {} are the most for a prediction", sweep.parameters.size(),
                               scree::Emulator::kMostDimensions));

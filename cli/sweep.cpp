@@ -191,11 +191,11 @@ int run_sweep(const SweepOptions& options) {
   if (!loaded.errors.empty()) return kBadInput;
   const scree::Sweep& sweep = loaded.sweep;
   const std::string type(scree::experiment_type(sweep.points.front().scenario));
-  if (!options.output.empty() && !scree::may_give(type, options.output)) {
-    fmt::print(stderr, "--output {}: a scenario of type {} does not give it; it gives {}\n", options.output,
-               type, scree::outputs_given(type));
-    return kBadInput;
-  }
+  if (!options.output.empty())
+    if (const std::string why = scree::why_not_given(type, options.output); !why.empty()) {
+      fmt::print(stderr, "--output {}: {}\n", options.output, why);
+      return kBadInput;
+    }
   if (!options.from.empty()) {
     std::vector<PointResults> points;
     try {

@@ -90,20 +90,15 @@ void read_method(const YamlNode& root, CalibrationSpec& spec, FileReader& reader
   if (method == nullptr) return;
   const YamlEntry* type = method->find("type");
   const std::string name = type != nullptr && type->value.kind == YamlKind::scalar ? type->value.text : "";
-  const auto integer = [&](const char* key, int& value, int least, int most) {
-    if (const YamlEntry* entry = method->find(key))
-      value = static_cast<int>(
-          reader.whole(entry->value, key, least, most).value_or(static_cast<std::uint64_t>(value)));
-  };
   if (name == "grid") {
     spec.method = CalibrationSpec::Method::grid;
     reader.allow(*method, {"type", "points"}, " in method grid");
-    integer("points", spec.grid_points, 2, 50);
+    reader.integer(*method, "points", 2, 50, spec.grid_points);
   } else if (name == "bayes") {
     reader.allow(*method, {"type", "first", "most", "together", "enough"}, " in method bayes");
-    integer("first", spec.first_points, static_cast<int>(Emulator::kLeastPoints), 500);
-    integer("most", spec.most_simulations, 4, static_cast<int>(Emulator::kMostPoints));
-    integer("together", spec.together, 1, 100);
+    reader.integer(*method, "first", static_cast<int>(Emulator::kLeastPoints), 500, spec.first_points);
+    reader.integer(*method, "most", 4, static_cast<int>(Emulator::kMostPoints), spec.most_simulations);
+    reader.integer(*method, "together", 1, 100, spec.together);
     if (const YamlEntry* entry = method->find("enough"))
       spec.enough = reader.number(entry->value, "enough").value_or(spec.enough);
     if (spec.most_simulations < spec.first_points)

@@ -164,13 +164,8 @@ EquivalenceSpecResult load_equivalence(const fs::path& file) {
     if (spans.size() != 2 || spec.friction.key.empty() || spec.rolling.key.empty())
       reader.fail(search->place, "search: numerics.impulse_friction and numerics.impulse_rolling are needed");
   }
-  const auto integer = [&](const char* key, int& value, int least, int most) {
-    if (const YamlEntry* entry = part->find(key))
-      value = static_cast<int>(
-          reader.whole(entry->value, key, least, most).value_or(static_cast<std::uint64_t>(value)));
-  };
-  integer("points", spec.points, static_cast<int>(Emulator::kLeastPoints), 200);
-  integer("rounds", spec.rounds, 1, 20);
+  reader.integer(*part, "points", static_cast<int>(Emulator::kLeastPoints), 200, spec.points);
+  reader.integer(*part, "rounds", 1, 20, spec.rounds);
   if (const YamlEntry* within = part->find("within"))
     spec.within = reader.number(within->value, "within").value_or(spec.within);
   if (!(spec.within > 0)) reader.fail(part->place, "within: degrees, more than 0");

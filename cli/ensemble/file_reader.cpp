@@ -65,6 +65,11 @@ std::optional<std::uint64_t> FileReader::whole(const YamlNode& node, const std::
   return std::nullopt;
 }
 
+void FileReader::integer(const YamlNode& map, const char* key, int least, int most, int& value) {
+  if (const YamlEntry* entry = map.find(key))
+    if (const auto found = whole(entry->value, key, least, most)) value = static_cast<int>(*found);
+}
+
 std::vector<std::uint64_t> FileReader::seeds(const YamlNode& list) {
   std::vector<std::uint64_t> seeds;
   for (const YamlNode& item : list.items) {

@@ -24,6 +24,8 @@ class FileReader {
   std::optional<std::string> scalar(const YamlNode& node, const std::string& key);
   std::optional<double> number(const YamlNode& node, const std::string& key);
   std::optional<std::uint64_t> whole(const YamlNode& node, const std::string& key, double least, double most);
+  /// Sets `value` where the map has the key.
+  void integer(const YamlNode& map, const char* key, int least, int most, int& value);
   /// Distinct integers.
   std::vector<std::uint64_t> seeds(const YamlNode& list);
 

@@ -8,8 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "sim/material/grading.h"
-#include "sim/scene/load.h"
+#include "sim/scene/dump_loads.h"
 #include "sim/scene/stage.h"
 
 namespace scree {
@@ -38,21 +37,13 @@ RunOutcome run_bucket_dump(const Scenario& scenario, const BucketDump& e, std::u
               {r, r, 2 * e.wall_height + 3 * e.height + e.diameter});
   RockWorld& world = stage.world();
   const Pose pose = bucket_pose(e);
-  const Grading grading = read_grading(scenario.grading_file);
-  std::vector<std::vector<NewSphere>> loads;
-  for (int dump = 1; dump <= e.buckets; ++dump) {
-    const auto stream = static_cast<std::uint64_t>(dump);
-    const std::vector<double> diameters =
-        generate_diameters(grading, e.mass, scenario.material.density, seed, stream);
-    const Load load = fill_region({{e.diameter, 0, e.height}}, diameters, seed, stream);
-    if (load.height > e.height)
+  const DumpLoads loads = make_dump_loads(scenario, e.mass, e.buckets, {0.0}, {{e.diameter, 0, e.height}},
+                                          seed, [&](double) { return pose; });
+  for (const double height : loads.heights)
+    if (height > e.height)
       throw std::invalid_argument(
-          fmt::format("{} kg need a bucket {:.2f} m high, it is {} m", e.mass, load.height, e.height));
-    loads.emplace_back();
-    for (std::size_t k = 0; k < diameters.size(); ++k)
-      loads.back().push_back({pose.to_world(load.positions[k]), diameters[k], dump});
-  }
-  stage.begin({}, loads);
+          fmt::format("{} kg need a bucket {:.2f} m high, it is {} m", e.mass, height, e.height));
+  stage.begin({}, loads.spheres);
   const Surface ground = stage.surface(e.floor_mu, e.floor_mu_r);
   world.add_mesh(make_box({-back, -r, -0.2 * r}, {r, r, 0}), ground, Motion());
   world.add_mesh(make_box({-back, -r, 0}, {0, r, e.wall_height}), ground, Motion());

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/scene/bench_loads.h"
+#include "sim/scene/dump_loads.h"
 #include "sim/scene/ground.h"
 #include "sim/scene/stage.h"
 
@@ -56,8 +56,8 @@ RunOutcome run_end_dump(const Scenario& scenario, const EndDump& e, std::uint64_
   RockWorld& world = stage.world();
 
   const double start_tilt = e.truck.release == Release::hoist ? 0.0 : e.truck.tilt_deg;
-  const BenchLoads loads = make_bench_loads(scenario, e.payload, e.dumps, e.points, e.truck.load_box, seed,
-                                            [&](double y) { return truck_pose(e, y, start_tilt); });
+  const DumpLoads loads = make_dump_loads(scenario, e.payload, e.dumps, e.points, {e.truck.load_box}, seed,
+                                          [&](double y) { return truck_pose(e, y, start_tilt); });
   stage.begin(make_base_layer(e.bench, seed), loads.spheres);
   world.add_mesh(make_bench(e.bench), stage.surface({}, {}), Motion());
   stage.add_tools();

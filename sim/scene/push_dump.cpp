@@ -4,7 +4,7 @@
 // the gate opens, the blade advances over the crest. On a base layer load and blade stand on the balls.
 #include <array>
 
-#include "sim/scene/bench_loads.h"
+#include "sim/scene/dump_loads.h"
 #include "sim/scene/ground.h"
 #include "sim/scene/stage.h"
 
@@ -36,7 +36,7 @@ RunOutcome run_push_dump(const Scenario& scenario, const PushDump& e, std::uint6
     pose.position = {-e.distance, y, ground};
     return pose;
   };
-  const BenchLoads loads = make_bench_loads(scenario, e.payload, e.dumps, e.points, e.load_box, seed, box_at);
+  const DumpLoads loads = make_dump_loads(scenario, e.payload, e.dumps, e.points, {e.load_box}, seed, box_at);
   stage.begin(make_base_layer(e.bench, seed), loads.spheres);
   world.add_mesh(make_bench(e.bench), stage.surface({}, {}), Motion());
   stage.add_tools();

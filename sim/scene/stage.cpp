@@ -26,8 +26,8 @@ Stage::Stage(const Scenario& scenario, std::uint64_t seed, int threads, const Ru
   if (scenario.engine == EngineKind::impulse) {
     settings.material.mu = scenario.bullet.value().friction;
     settings.material.mu_r = scenario.bullet.value().rolling;
+    settings.smallest_diameter = read_grading(scenario.grading_file).min_diameter();
   }
-  settings.smallest_diameter = read_grading(scenario.grading_file).min_diameter();
   settings.domain_low = domain_low;
   settings.domain_high = domain_high;
   settings.time_step_safety = scenario.numerics.time_step_safety;

@@ -1,20 +1,19 @@
-#include "sim/scene/bench_loads.h"
+#include "sim/scene/dump_loads.h"
 
 #include "sim/material/grading.h"
-#include "sim/scene/load.h"
 
 namespace scree {
 
-BenchLoads make_bench_loads(const Scenario& scenario, double payload, int dumps,
-                            const std::vector<double>& points, const Vec3& box, std::uint64_t seed,
-                            const std::function<Pose(double)>& pose) {
+DumpLoads make_dump_loads(const Scenario& scenario, double payload, int dumps,
+                          const std::vector<double>& points, const LoadRegion& region, std::uint64_t seed,
+                          const std::function<Pose(double)>& pose) {
   const Grading grading = read_grading(scenario.grading_file);
-  BenchLoads loads;
+  DumpLoads loads;
   for (int dump = 1; dump <= dumps; ++dump) {
     const auto stream = static_cast<std::uint64_t>(dump);
     const std::vector<double> diameters =
         generate_diameters(grading, payload, scenario.material.density, seed, stream);
-    const Load load = fill_region({box}, diameters, seed, stream);
+    const Load load = fill_region(region, diameters, seed, stream);
     loads.points.push_back(points[static_cast<std::size_t>(dump - 1) % points.size()]);
     loads.heights.push_back(load.height);
     const Pose here = pose(loads.points.back());
