@@ -2,6 +2,7 @@
 // What a run ends with, in the form that summary.json, the tables and the report share.
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -60,6 +61,9 @@ int section_count(const ReferenceValue& reference);
 /// not.
 bool is_value(const ReferenceValue& reference);
 
+/// The numbers of one seed of a run, by name (outputs.h).
+using Outputs = std::map<std::string, double>;
+
 /// A simulated value held against a printed one.
 struct Comparison {
   ReferenceValue reference;
@@ -83,9 +87,9 @@ struct RunResult {
 /// Reads assets/reference/results.csv (case,quantity,section,kind,value,std,unit,relation,source,dumps).
 std::vector<ReferenceValue> read_reference(const std::filesystem::path& file);
 
-/// Holds a run against reference cases. A value of a section is compared with the table of its number of
-/// sections; where several have it, with that of its number of dumps, or else of the finished pile.
-std::vector<Comparison> compare_with_reference(const std::vector<SeedResult>& seeds,
+/// Holds the numbers of a run's seeds against reference cases (output_for in outputs.h says which number
+/// against which value). Throws std::invalid_argument for a case that is not there.
+std::vector<Comparison> compare_with_reference(const std::vector<Outputs>& seeds,
                                                const std::vector<ReferenceValue>& reference,
                                                const std::vector<std::string>& cases);
 

@@ -83,8 +83,15 @@ SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<G
     section.d90_rel = section.d90 / whole.diameter(0.90);
     section.d95_rel = section.d95 / whole.diameter(0.95);
     for (const double sieve : table.sieves) section.passing.push_back(curve ? curve->passing(sieve) : nan);
+    section.share_above_1m =
+        curve ? section.mass * (1 - curve->passing(1)) : 0;  // kg, until the sum is known
     table.sections.push_back(std::move(section));
   }
+  table.original_above_1m = 1 - whole.passing(1);
+  double above = 0;
+  for (const Section& section : table.sections) above += section.share_above_1m;
+  for (Section& section : table.sections)
+    section.share_above_1m = above > 0 ? section.share_above_1m / above : nan;
   return table;
 }
 

@@ -41,6 +41,7 @@ struct Section {
   double d10 = 0, d50 = 0, d80 = 0, d90 = 0, d95 = 0;  ///< m; NaN when empty
   double d10_rel = 0, d50_rel = 0, d80_rel = 0, d90_rel = 0, d95_rel = 0;  ///< over the original material's
   double d15 = 0;                                                          ///< m
+  double share_above_1m = 0;    ///< of the mass of grains above 1 m in all sections; NaN without such grains
   std::vector<double> passing;  ///< shares at the sieves of SectionTable::sieves
 };
 
@@ -50,6 +51,7 @@ struct SectionTable {
   std::vector<double> sieves;  ///< m
   std::vector<double> original_passing;
   double d0_log = 0, dcq_log = 0;  ///< mean log10 d of the original and of its coarsest quartile
+  double original_above_1m = 0;    ///< share of the original mass above 1 m
   double mass_outside = 0;         ///< kg above the crest or outside the slope
   int dumps = 0;                   ///< dumps in the pile; 0: not known
 };

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "analysis/outputs.h"
 #include "sim/io/text_file.h"
 
 namespace scree {
@@ -61,11 +62,18 @@ Json passing_curves(const SectionTable& table) {
           {"section_passing", sections}};
 }
 
+Json outputs(const SeedResult& seed) {
+  Json list = Json::object();
+  for (const auto& [name, value] : outputs_of(seed)) list[name] = value;
+  return list;
+}
+
 Json seed_facts(const SeedResult& seed) {
   Json tables = Json::array();
   for (const SectionTable& table : seed.sections) tables.push_back(passing_curves(table));
   return {{"tables", tables},
           {"seed", seed.seed},
+          {"outputs", outputs(seed)},
           {"particles", seed.particles},
           {"fixed_balls", seed.fixed_balls},
           {"mass_t", number(seed.mass / 1000)},
@@ -147,6 +155,7 @@ const std::vector<SectionField>& section_fields() {
       {"d80_m", [](const Section& s) { return s.d80; }},
       {"d90_m", [](const Section& s) { return s.d90; }},
       {"d95_m", [](const Section& s) { return s.d95; }},
+      {"share_above_1m", [](const Section& s) { return s.share_above_1m; }},
       {"d10_rel", [](const Section& s) { return s.d10_rel; }},
       {"d50_rel", [](const Section& s) { return s.d50_rel; }},
       {"d80_rel", [](const Section& s) { return s.d80_rel; }},

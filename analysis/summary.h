@@ -14,13 +14,17 @@ namespace scree {
 /// when the file cannot be written.
 void write_summary(const RunResult& result, const std::filesystem::path& file);
 
-/// What comparison needs of a summary.json: the section tables (masses, chi, diameters) and repose angles of
-/// each seed, and the reference cases it was compared with. Throws std::runtime_error `file: what is wrong`.
+/// What other programs need of a summary.json.
 struct StoredRun {
   std::string title;
-  std::vector<SeedResult> seeds;
-  std::vector<std::string> cases;
+  std::vector<std::uint64_t> seeds;
+  std::vector<Outputs> outputs;    ///< of each seed
+  std::vector<std::string> cases;  ///< reference cases it was compared with
 };
+
+/// Reads the text of a summary.json, or the file. Throws std::runtime_error `what is wrong`, the second with
+/// the file's name before it.
+StoredRun parse_summary(const std::string& text);
 StoredRun read_summary(const std::filesystem::path& file);
 
 /// Writes sections.csv: one row for each seed, table and section; a value that does not exist is empty.

@@ -8,7 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "analysis/run_outputs.h"
+#include "analysis/outputs.h"
 #include "analysis/sweep_chart.h"
 #include "cli/commands.h"
 #include "cli/ensemble/equivalence_fit.h"

@@ -34,7 +34,7 @@ int run_compare(const std::filesystem::path& dir, const std::vector<std::string>
     return kBadInput;
   }
   fmt::print("{} ({} seed{})\n", run.title, run.seeds.size(), run.seeds.size() == 1 ? "" : "s");
-  const auto comparison = scree::compare_with_reference(run.seeds, reference, chosen);
+  const auto comparison = scree::compare_with_reference(run.outputs, reference, chosen);
   if (comparison.empty()) fmt::print("none of the values of these cases is in this run\n");
   scree::print_comparison(comparison);
   return kOk;

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "analysis/emulator.h"
-#include "analysis/run_outputs.h"
+#include "analysis/outputs.h"
 #include "cli/commands.h"
 #include "cli/ensemble/run_request.h"
 #include "cli/ensemble/sweep_file.h"

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "analysis/half_cone.h"
+#include "analysis/outputs.h"
 #include "analysis/slope_profile.h"
 #include "scree_version.h"
 #include "sim/scene/ground.h"
@@ -91,7 +92,7 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
   result.notes = std::move(notes);
   result.wall_seconds = wall_seconds;
   if (const BenchSpec* bench = bench_of(scenario)) result.bench_height = bench->height;
-  result.comparison = compare_with_reference(result.seeds, reference, scenario.compare);
+  result.comparison = compare_with_reference(outputs_of(result.seeds), reference, scenario.compare);
 
   double overlap = 0, lost = 0, mass = 0, left_out = 0;
   std::int64_t squeezed = 0, crowded = 0;
@@ -107,7 +108,7 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
   const bool impulse = scenario.engine == EngineKind::impulse;
   if (overlap > kOverlapWarning && impulse)
     result.notes.push_back(fmt::format(
-        "the largest overlap was {:.0f} % of the smaller radius; lower numerics.impulse_time_step_s or raise "
+        "the largest overlap was {:.0f} % of the smaller radius; lower numerics.impulse_step_ratio or raise "
         "numerics.impulse_iterations",
         100 * overlap));
   if (overlap > kOverlapWarning && !impulse)

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "analysis/run_outputs.h"
+#include "analysis/outputs.h"
 #include "analysis/sweep_chart.h"
 #include "cli/commands.h"
 #include "cli/ensemble/run_request.h"

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "analysis/run_outputs.h"
+#include "analysis/summary.h"
 #include "sim/io/text_file.h"
 
 namespace scree {
@@ -136,7 +136,9 @@ class Ensemble {
         std::ostringstream summary;
         summary << in.rdbuf();
         text = summary.str();
-        outputs = run_outputs(text);
+        StoredRun run = parse_summary(text);
+        if (run.outputs.size() != 1) throw std::runtime_error("a summary of one seed is expected");
+        outputs = std::move(run.outputs.front());
       } catch (const std::runtime_error& error) {
         failure = error.what();
       }

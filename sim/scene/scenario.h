@@ -142,8 +142,8 @@ struct Numerics {
   double time_step_safety = 0.8;  ///< share of the stable step (rrlinear)
   bool sleep = true;              ///< spheres at rest cost nothing until disturbed (rrlinear)
   double wake_tolerance = 0.1;    ///< change of a contact force that wakes, of weight + mean contact force
-  double impulse_time_step = 1.0e-3;  ///< s (impulse)
-  int impulse_iterations = 20;
+  double impulse_step_ratio = 0.0125;      ///< time step over sqrt(smallest diameter / g) (impulse)
+  int impulse_iterations = 10;             ///< of Bullet's solver in a step (impulse)
   std::optional<double> impulse_friction;  ///< Bullet's; none: the equivalent of rrlinear's
   std::optional<double> impulse_rolling;   ///< Bullet's over the effective radius; none: as above
 };

@@ -243,12 +243,24 @@ void check_scenario(const Scenario& scenario, const fs::path& asset_dir, ReadNot
 void find_bullet_settings(Scenario& s, const fs::path& asset_dir, ReadNotes& notes) {
   const auto &friction = s.numerics.impulse_friction, &rolling = s.numerics.impulse_rolling;
   if (s.engine != EngineKind::impulse) return;
-  if (!notes.good({&s.material.mu, &s.material.mu_r, &s.material.local_damping, &friction, &rolling})) return;
+  if (!notes.good({&s.material.mu, &s.material.mu_r, &s.material.local_damping, &friction, &rolling,
+                   &s.numerics.impulse_step_ratio, &s.numerics.impulse_iterations}))
+    return;
   if (friction && rolling) {
     s.bullet = Equivalence::Settings{*friction, *rolling, std::nullopt};
     return;
   }
   const char* way_out = "set numerics.impulse_friction and numerics.impulse_rolling, or take engine rrlinear";
+  const Numerics usual;
+  if (s.numerics.impulse_step_ratio != usual.impulse_step_ratio ||
+      s.numerics.impulse_iterations != usual.impulse_iterations) {
+    report(
+        notes.errors, notes.places.at(&s.material.mu),
+        fmt::format("engine impulse: equivalent settings of Bullet are known for impulse_step_ratio {:g} and "
+                    "impulse_iterations {} alone; {}",
+                    usual.impulse_step_ratio, usual.impulse_iterations, way_out));
+    return;
+  }
   const fs::path file = asset_dir / "impulse" / "equivalent.csv";
   try {
     const Equivalence table = Equivalence::read(file);

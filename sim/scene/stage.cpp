@@ -27,12 +27,13 @@ Stage::Stage(const Scenario& scenario, std::uint64_t seed, int threads, const Ru
     settings.material.mu = scenario.bullet.value().friction;
     settings.material.mu_r = scenario.bullet.value().rolling;
     settings.smallest_diameter = read_grading(scenario.grading_file).min_diameter();
+    settings.impulse_time_step = scenario.numerics.impulse_step_ratio *
+                                 std::sqrt(settings.smallest_diameter / settings.gravity.norm());
+    settings.impulse_iterations = scenario.numerics.impulse_iterations;
   }
   settings.domain_low = domain_low;
   settings.domain_high = domain_high;
   settings.time_step_safety = scenario.numerics.time_step_safety;
-  settings.impulse_time_step = scenario.numerics.impulse_time_step;
-  settings.impulse_iterations = scenario.numerics.impulse_iterations;
   settings.sleep = scenario.numerics.sleep;
   settings.wake_tolerance = scenario.numerics.wake_tolerance;
   settings.threads = threads;

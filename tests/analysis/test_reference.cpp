@@ -6,7 +6,7 @@
 #include <fstream>
 #include <map>
 
-#include "analysis/results.h"
+#include "analysis/outputs.h"
 #include "scree_version.h"
 
 namespace scree {
@@ -30,8 +30,7 @@ SeedResult seed_with_sections(std::vector<int> counts, double shift = 0) {
   SeedResult seed;
   for (const int n : counts) {
     SectionTable table;
-    table.sieves = {0.5, 1.0};
-    table.original_passing = {0.1, 0.4};
+    table.original_above_1m = 0.6;
     for (int k = 0; k < n; ++k) {
       Section section;
       section.name = std::string("S").append(std::to_string(k + 1));
@@ -39,7 +38,7 @@ SeedResult seed_with_sections(std::vector<int> counts, double shift = 0) {
       section.d50 = 1 + k;
       section.d50_rel = 2 + k;
       section.mass = 1000.0 * (k + 1);
-      section.passing = {0, 0.5};
+      section.share_above_1m = (k + 1) / (0.5 * n * (n + 1));
       table.sections.push_back(section);
     }
     seed.sections.push_back(table);
@@ -126,7 +125,7 @@ TEST(Compare, TakesTheTableWithTheCasesNumberOfDumps) {
   end.dumps = 4, third.dumps = 3;
   end.sections[2].chi = 0.4, third.sections[2].chi = 0.3;
   int checked = 0;
-  for (const auto& row : compare_with_reference(seeds, stored(), {"cm_field_3sec"}))
+  for (const auto& row : compare_with_reference(outputs_of(seeds), stored(), {"cm_field_3sec"}))
     if (row.reference.section == "bottom" && row.reference.quantity == "chi") {
       EXPECT_DOUBLE_EQ(row.simulated, row.reference.kind == "pfc3d" ? 0.3 : 0.4);
       ++checked;
@@ -137,21 +136,21 @@ TEST(Compare, TakesTheTableWithTheCasesNumberOfDumps) {
 TEST(Compare, TakesTheTableWithTheCasesNumberOfSections) {
   const auto rows = stored();
   const std::vector<SeedResult> seeds{seed_with_sections({6, 3, 5})};
-  const auto three = compare_with_reference(seeds, rows, {"cm_field_3sec"});
+  const auto three = compare_with_reference(outputs_of(seeds), rows, {"cm_field_3sec"});
   ASSERT_FALSE(three.empty());
   for (const auto& row : three)
     if (row.reference.section == "bottom" && row.reference.quantity == "chi") {
       EXPECT_DOUBLE_EQ(row.simulated, 0.2);
     }
-  const auto six = compare_with_reference(seeds, rows, {"A1"});
+  const auto six = compare_with_reference(outputs_of(seeds), rows, {"A1"});
   std::map<std::string, double> simulated;
   for (const auto& row : six) simulated[row.reference.quantity + row.reference.section] = row.simulated;
   EXPECT_DOUBLE_EQ(simulated.at("chiS6"), 0.5);
-  EXPECT_DOUBLE_EQ(simulated.at("mass_tS6"), 6);                // 6000 kg
-  EXPECT_DOUBLE_EQ(simulated.at("share_above_1mS6"), 6. / 21);  // half of 6 t, over half of 1 + 2 + ... + 6 t
+  EXPECT_DOUBLE_EQ(simulated.at("mass_tS6"), 6);  // 6000 kg
+  EXPECT_DOUBLE_EQ(simulated.at("share_above_1mS6"), 6. / 21);
   EXPECT_DOUBLE_EQ(simulated.at("share_above_1m_origwhole"), 0.6);
   // qb_field_5sec reads the table of 5: D50 of S5 is 5 m in it.
-  for (const auto& row : compare_with_reference(seeds, rows, {"qb_field_5sec"}))
+  for (const auto& row : compare_with_reference(outputs_of(seeds), rows, {"qb_field_5sec"}))
     if (row.reference.section == "S5" && row.reference.quantity == "d50") {
       EXPECT_DOUBLE_EQ(row.simulated, 5);
     }
@@ -159,9 +158,11 @@ TEST(Compare, TakesTheTableWithTheCasesNumberOfSections) {
 
 TEST(Compare, SkipsWhatTheRunDoesNotHaveAndBounds) {
   const auto rows = stored();
-  EXPECT_TRUE(compare_with_reference({seed_with_sections({6})}, rows, {"cm_field_3sec"}).empty());
-  EXPECT_TRUE(compare_with_reference({seed_with_sections({6})}, rows, {"lab_repose_0.2_0.2"}).empty());
-  for (const auto& row : compare_with_reference({seed_with_sections({6})}, rows, {"cm_field_6sec"}))
+  EXPECT_TRUE(compare_with_reference({outputs_of(seed_with_sections({6}))}, rows, {"cm_field_3sec"}).empty());
+  EXPECT_TRUE(
+      compare_with_reference({outputs_of(seed_with_sections({6}))}, rows, {"lab_repose_0.2_0.2"}).empty());
+  for (const auto& row :
+       compare_with_reference({outputs_of(seed_with_sections({6}))}, rows, {"cm_field_6sec"}))
     EXPECT_THAT(row.reference.relation, testing::AnyOf("eq", "approx", "mean", "derived"));
   EXPECT_THROW(compare_with_reference({}, rows, {"no_such_case"}), std::invalid_argument);
 }
@@ -170,12 +171,12 @@ TEST(Compare, ZOfDeviationsOfBothSides) {
   ReferenceValue row{"case", "chi", "S1", "pfc3d", 0.5, 0.3, "-", "eq", "T"};
   const std::vector<SeedResult> seeds{seed_with_sections({6}, -0.4), seed_with_sections({6}, 0.4)};
   // mean 0, deviation sqrt(0.32) = 0.566 (n - 1); z = -0.5 / sqrt(0.09 + 0.32)
-  auto compared = compare_with_reference(seeds, {row}, {"case"});
+  auto compared = compare_with_reference(outputs_of(seeds), {row}, {"case"});
   ASSERT_EQ(compared.size(), 1u);
   EXPECT_NEAR(compared[0].simulated_std.value(), std::sqrt(0.32), 1e-12);
   EXPECT_NEAR(compared[0].z.value(), -0.5 / std::sqrt(0.41), 1e-12);
   row.std.reset();
-  compared = compare_with_reference({seeds[0]}, {row}, {"case"});
+  compared = compare_with_reference({outputs_of(seeds[0])}, {row}, {"case"});
   EXPECT_FALSE(compared[0].simulated_std.has_value());
   EXPECT_FALSE(compared[0].z.has_value());
 }
@@ -184,11 +185,32 @@ TEST(Compare, AnglesOfReposeAndSlope) {
   SeedResult seed;
   seed.repose.emplace();
   seed.repose->angle = 26;
-  const auto repose = compare_with_reference({seed}, stored(), {"lab_repose_0.2_0.2"});
+  const auto repose = compare_with_reference({outputs_of(seed)}, stored(), {"lab_repose_0.2_0.2"});
   ASSERT_EQ(repose.size(), 2u);  // simulated and measured
   EXPECT_DOUBLE_EQ(repose[0].simulated, 26);
   seed.slope_angle = 25;
-  EXPECT_EQ(compare_with_reference({seed}, stored(), {"lab_segregation"}).size(), 2u);
+  EXPECT_EQ(compare_with_reference({outputs_of(seed)}, stored(), {"lab_segregation"}).size(), 2u);
+}
+
+TEST(Outputs, ChiChangesSignBetweenSections) {
+  // chi -0.25, -0.15, -0.05, 0.05 at x/L (2k - 1) / 12: the sign changes midway between 5/12 and 7/12.
+  SeedResult seed = seed_with_sections({6}, -0.25);
+  for (int k = 0; k < 6; ++k) seed.sections[0].sections[k].x_over_l = (2 * k + 1) / 12.0;
+  EXPECT_NEAR(outputs_of(seed).at("chi_zero_x_over_l"), 0.5, 1e-12);
+  EXPECT_FALSE(outputs_of(seed_with_sections({6}, 1)).contains("chi_zero_x_over_l"));
+}
+
+TEST(Outputs, EveryNumberOfADumpIsOneThatIsPromised) {
+  SeedResult seed = seed_with_sections({6, 3});
+  seed.sections.push_back(seed.sections[0]);
+  seed.sections[0].dumps = seed.sections[1].dumps = 4, seed.sections[2].dumps = 2;
+  seed.slope_angle = 37;
+  for (const auto& [name, value] : outputs_of(seed)) EXPECT_EQ(why_not_given("end_dump", name), "") << name;
+  EXPECT_TRUE(outputs_of(seed).contains("chi_S4_dump2"));
+  EXPECT_NE(why_not_given("end_dump", "chi_S0"), "");
+  EXPECT_NE(why_not_given("end_dump", "chi_top"), "");
+  EXPECT_NE(why_not_given("repose_lift", "chi_S1"), "");
+  EXPECT_EQ(why_not_given("bucket_dump", "d50_m_middle"), "");
 }
 
 }  // namespace

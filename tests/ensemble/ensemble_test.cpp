@@ -31,8 +31,8 @@ class Runs : public testing::Test {
                         << (folder / "begun").string() << "\n"
                         << body << "\n"
                         << R"(mkdir -p "$4"; cat > "$4/summary.json" <<END
-{"seeds": [1], "particles": 10, "simulated_seconds": 1.5, "largest_overlap_ratio": 0.1, "lost_mass_t": 0,
- "at_rest": true, "sections": [], "repose": {"angle_deg": {"per_seed": [$n], "mean": $n, "std": null}}}
+{"title": "made up", "comparison": [], "per_seed": [
+  {"seed": 1, "outputs": {"particles": 10, "simulated_seconds": 1.5, "at_rest": 1, "angle_deg": $n}}]}
 END
 )";
     fs::permissions(file, fs::perms::owner_all);

@@ -280,6 +280,10 @@ TEST(Impulse, TakesWhatIsEquivalentUnlessTold) {
   EXPECT_FALSE(bullet("numerics: {impulse_friction: 0.9}\n").error_deg);
   EXPECT_DOUBLE_EQ(bullet("numerics: {impulse_friction: 0.9, impulse_rolling: 0.8}\n").rolling, 0.8);
   EXPECT_DOUBLE_EQ(bullet("numerics: {impulse_friction: equivalent}\n").friction, 0.35);
+  EXPECT_FALSE(folder.load(head + "numerics: {impulse_iterations: 50}\n").errors.empty());
+  EXPECT_TRUE(
+      folder.load(head + "numerics: {impulse_iterations: 50, impulse_friction: 0.9, impulse_rolling: 0.8}\n")
+          .errors.empty());
   EXPECT_FALSE(folder.load("grading: CM0\nmaterial: {mu: 0.9, mu_r: 0.9}\nexperiment: {type: end_dump}\n")
                    .scenario.bullet);
 }

@@ -1,0 +1,30 @@
+#pragma once
+// The numbers of a run by name: what sweeps keep, calibrations aim at, and printed values are held against.
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/results.h"
+
+namespace scree {
+
+/// The numbers of one seed: of all runs particles, simulated_seconds, largest_overlap_ratio, lost_mass_t,
+/// at_rest (0 or 1); of a repose test angle_deg, height_over_radius_deg, half_coverage_deg, height_m,
+/// radius_m, runaways; of a drop test rebound_height_m; of a dump slope_angle_deg, sections, dumps,
+/// share_above_1m_orig, chi_zero_x_over_l (where chi changes sign along the slope) and chi_S1, mass_t_S1,
+/// d50_m_S1 ... for each section. Tables beside the scenario's own number of sections have names like
+/// chi_S1of3, piles before the last dump names like chi_S1_dump3 or chi_S1of3_dump3. A number that does not
+/// exist is left out.
+Outputs outputs_of(const SeedResult& seed);
+std::vector<Outputs> outputs_of(const std::vector<SeedResult>& seeds);
+
+/// The output that a printed value is to be held against, of those given; none if there is none. A value of
+/// the pile after some dump is held against that pile, or against the finished one where that was not kept.
+std::optional<double> output_for(const ReferenceValue& reference, const Outputs& outputs);
+
+/// Empty if a scenario with an experiment of this type (end_dump, push_dump, bucket_dump, repose_lift,
+/// drop_test) gives an output of this name; else a message that says what it gives.
+std::string why_not_given(const std::string& experiment, const std::string& output);
+
+}  // namespace scree
