@@ -19,9 +19,13 @@ int section_count(const ReferenceValue& reference) {
   return 6;
 }
 
-bool is_value(const ReferenceValue& reference) {
+Meaning meaning_of(const ReferenceValue& reference) {
   const std::string& relation = reference.relation;
-  return relation == "eq" || relation == "approx" || relation == "mean" || relation == "derived";
+  if (relation == "eq" || relation == "approx" || relation == "mean" || relation == "derived")
+    return Meaning::value;
+  if (relation == "gt" || relation == "min") return Meaning::at_least;
+  if (relation == "lt" || relation == "le" || relation == "max") return Meaning::at_most;
+  return Meaning::none;
 }
 
 std::vector<Comparison> compare_with_reference(const std::vector<Outputs>& seeds,
@@ -33,7 +37,9 @@ std::vector<Comparison> compare_with_reference(const std::vector<Outputs>& seeds
                      [&](const auto& row) { return row.case_name == name; }))
       throw std::invalid_argument(fmt::format("compare: no reference case is called '{}'", name));
     for (const ReferenceValue& row : reference) {
-      if (row.case_name != name || !is_value(row)) continue;
+      const Meaning meaning = meaning_of(row);
+      if (row.case_name != name || meaning == Meaning::none) continue;
+      if (meaning != Meaning::value && row.kind != "pfc3d") continue;
       std::vector<double> values;
       for (const Outputs& seed : seeds)
         if (const auto value = output_for(row, seed)) values.push_back(*value);
@@ -42,7 +48,10 @@ std::vector<Comparison> compare_with_reference(const std::vector<Outputs>& seeds
       Comparison comparison{row, simulated.mean, std::nullopt, std::nullopt};
       if (simulated.n > 1) comparison.simulated_std = simulated.std;
       const double deviation = std::hypot(row.std.value_or(0), comparison.simulated_std.value_or(0));
-      if (row.std && deviation > 0) comparison.z = (simulated.mean - row.value) / deviation;
+      double difference = simulated.mean - row.value;
+      if (meaning == Meaning::at_least) difference = std::min(difference, 0.0);
+      if (meaning == Meaning::at_most) difference = std::max(difference, 0.0);
+      if (deviation > 0) comparison.z = difference / deviation;
       comparisons.push_back(std::move(comparison));
     }
   }

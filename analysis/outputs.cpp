@@ -25,6 +25,7 @@ std::vector<std::string> plain_names(const std::string& experiment) {
     add({"rebound_height_m"});
   else
     add({"slope_angle_deg", "chi_zero_x_over_l", "share_above_1m_orig", "sections", "dumps"});
+  if (experiment == "end_dump" || experiment == "push_dump") add({"point1_toe_width_m"});
   return names;
 }
 
@@ -40,6 +41,8 @@ bool may_give(const std::string& experiment, const std::string& output) {
   static const std::regex cell("([a-z0-9_]+)_(top|middle|bottom)");
   std::smatch parts;
   if (!std::regex_match(output, parts, experiment == "bucket_dump" ? cell : slope)) return false;
+  if (parts[1] == "lateral_chi_std" || parts[1] == "lateral_chi_range" || parts[1] == "lateral_d50_rel_std")
+    return experiment != "bucket_dump" && !parts[2].matched && !parts[3].matched;
   const auto& fields = section_fields();
   return std::any_of(fields.begin(), fields.end(),
                      [&](const SectionField& field) { return parts[1] == field.name; });
@@ -71,6 +74,7 @@ std::string output_name(const std::string& quantity) {
   if (quantity == "angle" || quantity == "slope_angle") return quantity + "_deg";
   if (quantity == "rebound_height") return quantity + "_m";
   if (quantity == "xl_chi_zero") return "chi_zero_x_over_l";
+  if (quantity == "toe_width") return "point1_toe_width_m";
   static const std::regex diameter("d[0-9]+");
   return std::regex_match(quantity, diameter) ? quantity + "_m" : quantity;
 }
@@ -110,6 +114,14 @@ Outputs outputs_of(const SeedResult& seed) {
       for (const SectionField& field : section_fields())
         add(fmt::format("{}_{}{}", field.name, section.name, after), field.value(section));
   }
+  if (seed.lateral) {
+    add("point1_toe_width_m", seed.lateral->point1_toe_width);
+    for (const LateralSection& section : seed.lateral->sections) {
+      add("lateral_chi_std_" + section.name, section.chi_std);
+      add("lateral_chi_range_" + section.name, section.chi_range);
+      add("lateral_d50_rel_std_" + section.name, section.d50_rel_std);
+    }
+  }
   return outputs;
 }
 
@@ -125,7 +137,7 @@ std::optional<double> output_for(const ReferenceValue& reference, const Outputs&
     const auto found = outputs.find(key);
     return found == outputs.end() ? std::nullopt : std::optional(found->second);
   };
-  if (reference.section == "whole") return value(name);
+  if (reference.section == "whole" || reference.quantity == "toe_width") return value(name);
   const int own = whole_number(outputs, "sections"), dumps = whole_number(outputs, "dumps");
   const int count = section_count(reference);
   std::string section = reference.section;

@@ -13,9 +13,10 @@ namespace scree {
 /// at_rest (0 or 1); of a repose test angle_deg, height_over_radius_deg, half_coverage_deg, height_m,
 /// radius_m, runaways; of a drop test rebound_height_m; of a dump slope_angle_deg, sections, dumps,
 /// share_above_1m_orig, chi_zero_x_over_l (where chi changes sign along the slope) and chi_S1, mass_t_S1,
-/// d50_m_S1 ... for each section. Tables beside the scenario's own number of sections have names like
-/// chi_S1of3, piles before the last dump names like chi_S1_dump3 or chi_S1of3_dump3. A number that does not
-/// exist is left out.
+/// d50_m_S1 ... for each section, and of a dump over a bench lateral_chi_std_S1, lateral_chi_range_S1,
+/// lateral_d50_rel_std_S1 (over strips across the slope) and point1_toe_width_m. Tables beside the scenario's
+/// own number of sections have names like chi_S1of3, piles before the last dump names like chi_S1_dump3 or
+/// chi_S1of3_dump3. A number that does not exist is left out.
 Outputs outputs_of(const SeedResult& seed);
 std::vector<Outputs> outputs_of(const std::vector<SeedResult>& seeds);
 

@@ -106,6 +106,17 @@ std::string value_cell(std::string_view quantity, double value, std::optional<do
   return out;
 }
 
+const char* relation_sign(const ReferenceValue& reference) {
+  switch (meaning_of(reference)) {
+    case Meaning::at_least:
+      return "≥ ";
+    case Meaning::at_most:
+      return "≤ ";
+    default:
+      return reference.relation == "approx" ? "≈ " : "";
+  }
+}
+
 std::string comparison_table(const RunResult& result) {
   if (result.comparison.empty()) return "";
   std::string out =
@@ -126,7 +137,7 @@ std::string comparison_table(const RunResult& result) {
         "<td>{}</td><td>{}</td><td class=\"word {}\">{}</td><td class=\"word\">{}</td></tr>\n",
         html_escaped(quantity_in_words(reference.quantity)), html_escaped(reference.section),
         html_escaped(kind_in_words(reference.kind)), html_escaped(reference.case_name),
-        reference.relation == "approx" ? "≈ " : "",
+        relation_sign(reference),
         value_cell(reference.quantity, reference.value, reference.std, reference.unit),
         value_cell(reference.quantity, row.simulated, row.simulated_std, reference.unit),
         row.z ? decimals_text(*row.z, 1) : "–", shown.style, shown.words, html_escaped(reference.source));

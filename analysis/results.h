@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/lateral.h"
 #include "analysis/repose_angle.h"
 #include "analysis/segregation.h"
 
@@ -33,6 +34,7 @@ struct SeedResult {
   std::vector<Grain> original;  ///< every grain as generated (ids, diameters, masses)
   std::vector<SectionTable>
       sections;  ///< one for each number of sections asked for, or of the cells of a half cone
+  std::optional<Lateral> lateral;              ///< dump over a bench: strips across the slope
   std::optional<ReposeAngle> repose;           ///< repose test
   std::optional<double> rebound_height;        ///< drop test, m
   std::vector<std::array<double, 2>> profile;  ///< slope profile (x, z) m: surface along the dump axis
@@ -57,9 +59,9 @@ struct ReferenceValue {
 /// by the case's name (cm_field_3sec, qb_field_5sec); 6 otherwise (thesis, chapter 6).
 int section_count(const ReferenceValue& reference);
 
-/// Whether a printed value is one that a mean can be held against; bounds (min, max, lt ...) and medians are
-/// not.
-bool is_value(const ReferenceValue& reference);
+/// What a printed number says of the mean: the value itself, a bound, or (medians) nothing.
+enum class Meaning { value, at_least, at_most, none };
+Meaning meaning_of(const ReferenceValue& reference);
 
 /// The numbers of one seed of a run, by name (outputs.h).
 using Outputs = std::map<std::string, double>;
@@ -69,8 +71,8 @@ struct Comparison {
   ReferenceValue reference;
   double simulated = 0;
   std::optional<double> simulated_std;  ///< between seeds; none with one seed
-  /// (simulated - reference) / sqrt(reference_std^2 + simulated_std^2); none when the printed value has no
-  /// deviation
+  /// (simulated - reference) / sqrt(reference_std^2 + simulated_std^2), of the deviations that there are;
+  /// none without any. Of a bound: how far it is passed, 0 if it is kept.
   std::optional<double> z;
 };
 
@@ -88,7 +90,8 @@ struct RunResult {
 std::vector<ReferenceValue> read_reference(const std::filesystem::path& file);
 
 /// Holds the numbers of a run's seeds against reference cases (output_for in outputs.h says which number
-/// against which value). Throws std::invalid_argument for a case that is not there.
+/// against which value). Bounds are held against PFC3D's alone: measured ones are ranges of single places.
+/// Throws std::invalid_argument for a case that is not there.
 std::vector<Comparison> compare_with_reference(const std::vector<Outputs>& seeds,
                                                const std::vector<ReferenceValue>& reference,
                                                const std::vector<std::string>& cases);

@@ -95,6 +95,12 @@ SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<G
   return table;
 }
 
+int slice_of(const Grain& grain, double crest_height, int n) {
+  const double below_crest = (crest_height - grain.position.z()) / crest_height;
+  if (!(below_crest >= 0)) return -1;  // above the crest, or no number
+  return static_cast<int>(std::min(below_crest * n, n - 1.0));
+}
+
 SectionTable analyse_sections(const std::vector<Grain>& pile, const std::vector<Grain>& original,
                               double crest_height, int n) {
   if (n < 1) throw std::invalid_argument(fmt::format("{} sections: at least 1 is needed", n));
@@ -104,13 +110,11 @@ SectionTable analyse_sections(const std::vector<Grain>& pile, const std::vector<
   for (int k = 0; k < n; ++k) slices.push_back({fmt::format("S{}", k + 1), (2.0 * k + 1) / (2.0 * n), {}});
   double outside = 0;
   for (const Grain& grain : pile) {
-    const double below_crest = (crest_height - grain.position.z()) / crest_height;
-    if (!(below_crest >= 0)) {  // above the crest, or no number
+    const int slice = slice_of(grain, crest_height, n);
+    if (slice < 0)
       outside += grain.mass;
-      continue;
-    }
-    // A small grain between the balls of the floor can lie below it: it belongs to the lowest section.
-    slices[static_cast<std::size_t>(std::min(below_crest * n, n - 1.0))].grains.push_back(&grain);
+    else
+      slices[static_cast<std::size_t>(slice)].grains.push_back(&grain);
   }
   SectionTable table = tabulate(slices, original);
   table.mass_outside = outside;

@@ -68,6 +68,10 @@ struct NamedGrains {
 /// `original` is empty.
 SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<Grain>& original);
 
+/// Slice of equal height that a grain lies in, 0 at the crest to n - 1 at the floor; -1 above the crest. A
+/// small grain between the balls of the floor can lie below it: it belongs to the lowest slice.
+int slice_of(const Grain& grain, double crest_height, int n);
+
 /// Cuts the slope into `n` slices of equal height between `crest_height` (S1) and 0 (Sn) and analyses each
 /// against `original` (every grain as dumped). Grains above the crest height are outside (counted as
 /// mass_outside).

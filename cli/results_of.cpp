@@ -16,7 +16,16 @@ namespace scree {
 namespace {
 constexpr double kOverlapWarning =
     0.10;  // of the smaller radius; physics of soft spheres beyond it is doubtful
+
+int dump_points(const Scenario& scenario) {
+  if (const auto* dump = std::get_if<EndDump>(&scenario.experiment))
+    return static_cast<int>(dump->points.size());
+  if (const auto* push = std::get_if<PushDump>(&scenario.experiment))
+    return static_cast<int>(push->points.size());
+  return 1;
 }
+
+}  // namespace
 
 SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outcome) {
   SeedResult r;
@@ -62,6 +71,9 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
     };
     add_tables(r.final_state.grains, last);
     for (const RunOutcome::AfterDump& after : outcome.after_dumps) add_tables(after.pile.grains, after.dump);
+    if (last > 0)
+      r.lateral = analyse_lateral(r.final_state.grains, dumped_until(last), bench->height,
+                                  scenario.output.sections, dump_points(scenario));
     r.profile = slope_profile(r.final_state.grains);
     r.slope_angle = slope_angle(r.profile, bench->height);
   } else if (std::holds_alternative<BucketDump>(scenario.experiment)) {

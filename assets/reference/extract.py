@@ -15,13 +15,24 @@ import sys
 
 COPIES = ['psd_constraints.csv', 'lab_repose_pfc3d_summary.csv', 'lab_segregation_pfc3d_psd.csv',
           'model_parameters.csv']
-CASES = ['A1', 'A3', 'B1', 'C1', 'D1', 'D2', 'D6', 'lateral', 'cm_field_3sec', 'cm_field_6sec', 'qb_field_5sec',
-         'lab_segregation']
-QUANTITIES = {'chi': 'chi', 'd10': 'd10', 'd50': 'd50', 'd80': 'd80', 'd10_rel': 'd10_rel', 'd50_rel': 'd50_rel',
-              'mass_in_section': 'mass_t', 'share_d_gt_1m': 'share_above_1m',
-              'share_d_gt_1m_orig': 'share_above_1m_orig'}
+HEIGHTS = ['A1', 'A2', 'A3', 'A4']
+SPACINGS = ['lateral_S4', 'lateral_S8', 'lateral_S12']
+# Names of the tables and the cases they speak of.
+CASES = {name: [name] for name in ['A1', 'A3', 'A4', 'B1', 'C1', 'D1', 'D2', 'D6', *SPACINGS, 'cm_field_3sec',
+                                   'cm_field_6sec', 'qb_field_5sec', 'lab_segregation']}
+CASES |= {'A1-A4': HEIGHTS, 'A1_D2': ['A1', 'D2'], 'D1-D6': ['D%d' % k for k in range(1, 7)],
+          'lateral': SPACINGS, 'lateral_S4_S8_S12': SPACINGS}
+# Printed values that others of the source contradict.
+CONTRADICTED = [('1810', 'A1-A4', 'chi', 'S6')]
+# Smallest and largest deviations between repeats are no values of a section.
+QUANTITIES = {'chi': ['chi'], 'd10': ['d10'], 'd50': ['d50'], 'd80': ['d80'], 'd10_rel': ['d10_rel'],
+              'd50_rel': ['d50_rel'], 'd10_d50_d90_rel': ['d10_rel', 'd50_rel', 'd90_rel'],
+              'mass_in_section': ['mass_t'], 'share_d_gt_1m': ['share_above_1m'],
+              'share_d_gt_1m_orig': ['share_above_1m_orig'], 'xl_chi_zero': ['xl_chi_zero'],
+              'bottom_width_from_point_1': ['toe_width'], 'chi_range': ['lateral_chi_range']}
 UNITS = {'mm': ('m', 1e-3), 'cm': ('m', 1e-2), 'm': ('m', 1), 't': ('t', 1), 'pct': ('-', 1e-2), '-': ('-', 1),
          'deg': ('deg', 1)}
+LOW, HIGH = ('gt', 'min'), ('lt', 'le', 'max')
 SECTION = re.compile(r'S\d|top|middle|bottom|whole')
 COLUMNS = ['case', 'quantity', 'section', 'kind', 'value', 'std', 'unit', 'relation', 'source', 'dumps']
 # Cases of chapter 5 under their names in simulation_cases.csv.
@@ -29,7 +40,8 @@ SIMULATED_AS = {'cm_field_3sec': 'validation_CM', 'qb_field_5sec': 'validation_Q
 
 
 class Results:
-    """One row a (case, quantity, section, kind, relation); of repeats the first with a deviation stays."""
+    """One row a (case, quantity, section, kind, relation); of repeats the first with a deviation stays, of bounds
+    the closest."""
 
     def __init__(self, dumps):
         self.rows = {}
@@ -37,9 +49,16 @@ class Results:
 
     def add(self, case, quantity, section, kind, value, std, unit, relation, source):
         unit, factor = UNITS[unit]
-        key = (case, quantity, section, kind, 'eq' if relation in ('eq', 'approx', 'derived') else relation)
+        place = (case, quantity, section, kind)
+        side = 'low' if relation in LOW else 'high' if relation in HIGH else relation
+        key = place + ('eq' if relation in ('eq', 'approx', 'derived') else side,)
+        if side in ('low', 'high') and place + ('eq',) in self.rows:
+            return  # the value itself is printed
         old = self.rows.get(key)
-        if old and (old['std'] or std is None):
+        if old and side in ('low', 'high'):
+            if (value * factor <= float(old['value'])) == (side == 'low'):
+                return  # the other bound is the closer one
+        elif old and (old['std'] or std is None):
             return
         number = lambda x: '' if x is None else '%.6g' % (x * factor)
         self.rows[key] = dict(zip(COLUMNS, (case, quantity, section, kind, number(value), number(std), unit, relation,
@@ -56,13 +75,18 @@ def optional(text):
 
 
 def profiles(tables, out):
-    for r in rows(tables, 'segregation_profiles.csv'):
+    lines = sorted(rows(tables, 'segregation_profiles.csv'), key=lambda r: r['relation'] in LOW + HIGH)
+    for r in lines:
         if r['case'] not in CASES or r['quantity'] not in QUANTITIES or not SECTION.fullmatch(r['section_or_xl']):
             continue
         if r['case'] == 'cm_field_6sec' and (r['quantity'] == 'chi' or r['quantity'].endswith('_rel')):
             continue  # complete in tables C.7 to C.14, below
-        out.add(r['case'], QUANTITIES[r['quantity']], r['section_or_xl'], r['kind'], float(r['value']),
-                optional(r['std']), r['unit'], r['relation'], 'line ' + r['source_line'])
+        if (r['source_line'], r['case'], r['quantity'], r['section_or_xl']) in CONTRADICTED:
+            continue
+        for case in CASES[r['case']]:
+            for quantity in QUANTITIES[r['quantity']]:
+                out.add(case, quantity, r['section_or_xl'], r['kind'], float(r['value']), optional(r['std']), r['unit'],
+                        r['relation'], 'line ' + r['source_line'])
 
 
 def cm_field(tables, out):

@@ -42,68 +42,63 @@ EquivalenceRun bullet_run(const EquivalenceSpec& spec, double local_damping, dou
   return run;
 }
 
-/// Bullet's angle over its two coefficients, at one local damping.
-class BulletAngle {
+/// An engine's angle over its two coefficients, at one local damping, from runs with scatter.
+class AngleMap {
  public:
-  explicit BulletAngle(const EquivalenceSpec& spec) : spec_(spec) {}
+  AngleMap(double x_from, double x_to, double y_from, double y_to)
+      : from_{x_from, y_from}, width_{x_to - x_from, y_to - y_from} {}
 
   void add(double friction, double rolling, double angle) {
     if (!std::isfinite(angle)) return;
-    at_.push_back({share(spec_.friction, friction), share(spec_.rolling, rolling)});
+    at_.push_back(place(friction, rolling));
     angles_.push_back(angle);
   }
   void learn() {
     if (angles_.size() < static_cast<std::size_t>(Emulator::kLeastPoints))
-      throw std::runtime_error("too few simulations with engine impulse gave an angle");
+      throw std::runtime_error(fmt::format("{} simulations gave an angle; at least {} are needed",
+                                           angles_.size(), Emulator::kLeastPoints));
     Eigen::MatrixXd x(static_cast<Eigen::Index>(at_.size()), 2);
-    for (std::size_t k = 0; k < at_.size(); ++k) x.row(static_cast<Eigen::Index>(k)) << at_[k][0], at_[k][1];
+    for (std::size_t k = 0; k < at_.size(); ++k) x.row(static_cast<Eigen::Index>(k)) = at_[k].transpose();
     emulator_.emplace(
         x, Eigen::Map<const Eigen::VectorXd>(angles_.data(), static_cast<Eigen::Index>(angles_.size())));
   }
-
-  /// Sets the node's coefficients to those on its ray that give `angle` and are nearest to (mu, mu_r); false
-  /// if none in the range searched do.
-  bool solve(EquivalenceNode& node, double angle) const {
-    double best = nan, before_factor = nan, before = nan;
-    for (int k = 0; k <= kRaySteps; ++k) {
-      const double factor = 0.2 * std::pow(25.0, static_cast<double>(k) / kRaySteps);  // 0.2 to 5
-      const double friction = factor * node.mu, rolling = factor * node.mu_r;
-      const bool inside = friction >= spec_.friction.from && friction <= spec_.friction.to &&
-                          rolling >= spec_.rolling.from && rolling <= spec_.rolling.to;
-      const double here = inside ? at(friction, rolling) - angle : nan;
-      if (before * here <= 0) {
-        const double root = before_factor + (factor - before_factor) * before / (before - here);
-        if (!(std::abs(std::log(root)) > std::abs(std::log(best)))) best = root;
-      }
-      before_factor = factor;
-      before = here;
-    }
-    if (!std::isfinite(best)) return false;
-    node.friction = best * node.mu;
-    node.rolling = best * node.mu_r;
-    return true;
-  }
+  Prediction at(double friction, double rolling) const { return emulator_->at(place(friction, rolling)); }
 
  private:
-  static double share(const FileReader::Span& span, double value) {
-    return (value - span.from) / (span.to - span.from);
-  }
-  double at(double friction, double rolling) const {
-    return emulator_->at(Eigen::Vector2d(share(spec_.friction, friction), share(spec_.rolling, rolling)))
-        .mean;
+  Eigen::Vector2d place(double friction, double rolling) const {
+    const auto share = [&](double value, int k) {
+      return width_[k] > 0 ? (value - from_[k]) / width_[k] : 0.0;
+    };
+    return {share(friction, 0), share(rolling, 1)};
   }
 
-  const EquivalenceSpec& spec_;
-  std::vector<std::array<double, 2>> at_;
+  std::array<double, 2> from_, width_;
+  std::vector<Eigen::Vector2d> at_;
   std::vector<double> angles_;
   std::optional<Emulator> emulator_;
 };
 
-double mean_of(const std::vector<double>& values) {
-  std::vector<double> finite;
-  for (const double value : values)
-    if (std::isfinite(value)) finite.push_back(value);
-  return finite.empty() ? nan : mean_std(finite).mean;
+/// Sets the node's coefficients of Bullet to those on its ray that give rrlinear's angle and are nearest to
+/// (mu, mu_r); false if none in the range searched do.
+bool solve(const EquivalenceSpec& spec, const AngleMap& bullet, EquivalenceNode& node) {
+  double best = nan, before_factor = nan, before = nan;
+  for (int k = 0; k <= kRaySteps; ++k) {
+    const double factor = 0.2 * std::pow(25.0, static_cast<double>(k) / kRaySteps);  // 0.2 to 5
+    const double friction = factor * node.mu, rolling = factor * node.mu_r;
+    const bool inside = friction >= spec.friction.from && friction <= spec.friction.to &&
+                        rolling >= spec.rolling.from && rolling <= spec.rolling.to;
+    const double here = inside ? bullet.at(friction, rolling).mean - node.angle_rrlinear : nan;
+    if (before * here <= 0) {
+      const double root = before_factor + (factor - before_factor) * before / (before - here);
+      if (!(std::abs(std::log(root)) > std::abs(std::log(best)))) best = root;
+    }
+    before_factor = factor;
+    before = here;
+  }
+  if (!std::isfinite(best)) return false;
+  node.friction = best * node.mu;
+  node.rolling = best * node.mu_r;
+  return true;
 }
 
 std::vector<double> rising(const YamlNode& nodes, const char* key, FileReader& reader) {
@@ -198,35 +193,37 @@ std::vector<EquivalenceNode> fit_equivalence(const EquivalenceSpec& spec,
                                 spec.seeds[(design.size() - 1) % spec.seeds.size()]));
     }
     const std::vector<double> first = simulate(runs);
-    const std::size_t seeds = spec.seeds.size();
-    const auto of_seeds = [&](const std::vector<double>& values, std::size_t k) {
-      const auto begin = values.begin() + static_cast<std::ptrdiff_t>(k * seeds);
-      return mean_of({begin, begin + static_cast<std::ptrdiff_t>(seeds)});
-    };
-    for (std::size_t k = 0; k < nodes.size(); ++k) nodes[k].angle_rrlinear = of_seeds(first, k);
-    BulletAngle bullet(spec);
-    for (std::size_t k = 0; k < design.size(); ++k)
-      bullet.add(design[k][0], design[k][1], first[nodes.size() * seeds + k]);
+    AngleMap rrlinear(spec.mu.front(), spec.mu.back(), spec.mu_r.front(), spec.mu_r.back());
+    AngleMap bullet(spec.friction.from, spec.friction.to, spec.rolling.from, spec.rolling.to);
+    auto angle = first.begin();
+    for (const EquivalenceNode& node : nodes)
+      for (std::size_t k = 0; k < spec.seeds.size(); ++k) rrlinear.add(node.mu, node.mu_r, *angle++);
+    for (const auto& [friction, rolling] : design) bullet.add(friction, rolling, *angle++);
+    rrlinear.learn();
+    bullet.learn();
+    for (EquivalenceNode& node : nodes) node.angle_rrlinear = rrlinear.at(node.mu, node.mu_r).mean;
 
     for (int round = 0; round < spec.rounds; ++round) {
-      bullet.learn();
       std::vector<EquivalenceNode*> asked;
       runs.clear();
       for (EquivalenceNode& node : nodes) {
-        if (node.found || !std::isfinite(node.angle_rrlinear) || !bullet.solve(node, node.angle_rrlinear))
-          continue;
+        if (node.found || !solve(spec, bullet, node)) continue;
         asked.push_back(&node);
         for (const std::uint64_t seed : spec.seeds)
           runs.push_back(bullet_run(spec, local_damping, node.friction, node.rolling, seed));
       }
       if (asked.empty()) break;
       const std::vector<double> checks = simulate(runs);
-      for (std::size_t k = 0; k < asked.size(); ++k) {
-        EquivalenceNode& node = *asked[k];
-        for (std::size_t s = 0; s < seeds; ++s)
-          bullet.add(node.friction, node.rolling, checks[k * seeds + s]);
-        node.angle_impulse = of_seeds(checks, k);
-        node.found = std::abs(node.angle_impulse - node.angle_rrlinear) <= spec.within;
+      angle = checks.begin();
+      for (const EquivalenceNode* node : asked)
+        for (std::size_t k = 0; k < spec.seeds.size(); ++k)
+          bullet.add(node->friction, node->rolling, *angle++);
+      bullet.learn();
+      for (EquivalenceNode* node : asked) {
+        const Prediction learnt = bullet.at(node->friction, node->rolling);
+        node->angle_impulse = learnt.mean;
+        node->found =
+            std::abs(learnt.mean - node->angle_rrlinear) <= spec.within && learnt.std <= spec.within;
       }
     }
     all.insert(all.end(), nodes.begin(), nodes.end());
@@ -243,9 +240,7 @@ std::string equivalence_csv(const std::vector<EquivalenceNode>& nodes,
     text += fmt::format("{:g},{:g},{:g},", node.mu, node.mu_r, node.local_damping);
     text += node.found ? fmt::format("{:.4f},{:.4f},{:.2f},{:.2f}\n", node.friction, node.rolling,
                                      node.angle_rrlinear, node.angle_impulse)
-                       : fmt::format(",,{},\n", std::isfinite(node.angle_rrlinear)
-                                                    ? fmt::format("{:.2f}", node.angle_rrlinear)
-                                                    : "");
+                       : fmt::format(",,{:.2f},\n", node.angle_rrlinear);
   }
   return text;
 }

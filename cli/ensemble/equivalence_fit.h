@@ -56,15 +56,16 @@ using EquivalenceSimulator = std::function<std::vector<double>(const std::vector
 /// A node of the table that comes out.
 struct EquivalenceNode {
   double mu = 0, mu_r = 0, local_damping = 0;
-  double angle_rrlinear = 0;         ///< degrees, mean over seeds
-  double angle_impulse = 0;          ///< degrees, of the last check
+  double angle_rrlinear = 0;         ///< degrees, of the emulator of all nodes' runs
+  double angle_impulse = 0;          ///< degrees, of the emulator that has learnt the last check
   double friction = 0, rolling = 0;  ///< Bullet's
-  bool found = false;                ///< the check came within the bound
+  bool found = false;                ///< both are within the bound, and Bullet's is known as closely
 };
 
-/// Simulates the nodes with rrlinear and a Sobol design with Bullet, emulates Bullet's angle over its two
-/// coefficients, takes for each node those on the ray through (mu, mu_r) that give rrlinear's angle (the ones
-/// nearest to mu and mu_r), simulates them, and corrects with what was learnt. Throws what `simulate` throws,
+/// Simulates the nodes with rrlinear and a Sobol design with Bullet, emulates both engines' angles over their
+/// coefficients (runs scatter by more than the bound; neighbours help), takes for each node those on the ray
+/// through (mu, mu_r) that give rrlinear's angle (the ones nearest to mu and mu_r), simulates them, and
+/// corrects with what was learnt. Throws what `simulate` throws,
 /// and std::runtime_error when too few simulations gave a number.
 std::vector<EquivalenceNode> fit_equivalence(const EquivalenceSpec& spec,
                                              const EquivalenceSimulator& simulate);

@@ -63,7 +63,7 @@ bool same_value(const std::string& a, const std::string& b) {
 
 // `sections`: into how many the slope of the runs is cut.
 bool is_reading_of(const std::string& output, const ReferenceValue& printed, int sections) {
-  if (!is_value(printed)) return false;
+  if (meaning_of(printed) != Meaning::value) return false;
   const std::string &quantity = printed.quantity, &section = printed.section;
   if (quantity == "angle")
     return output == "angle_deg" || output == "height_over_radius_deg" || output == "half_coverage_deg";

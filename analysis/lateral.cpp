@@ -1,0 +1,83 @@
+#include "analysis/lateral.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "analysis/results.h"
+
+namespace scree {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kTail = 0.025;  // of the mass, left out at either end
+
+double width_of_bulk(std::vector<std::pair<double, double>> y_and_mass) {
+  if (y_and_mass.empty()) return nan;
+  std::sort(y_and_mass.begin(), y_and_mass.end());
+  double total = 0;
+  for (const auto& [y, mass] : y_and_mass) total += mass;
+  const auto quantile = [&](double share) {
+    double below = 0;
+    for (const auto& [y, mass] : y_and_mass)
+      if ((below += mass) >= share * total) return y;
+    return y_and_mass.back().first;
+  };
+  return quantile(1 - kTail) - quantile(kTail);
+}
+
+double range_of(const std::vector<double>& values) {
+  if (values.size() < 2) return nan;
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return *high - *low;
+}
+
+}  // namespace
+
+Lateral analyse_lateral(const std::vector<Grain>& pile, const std::vector<Grain>& original,
+                        double crest_height, int n, int points, double strip_width) {
+  if (n < 1 || points < 1 || !(strip_width > 0) || !(crest_height > 0))
+    throw std::invalid_argument(
+        fmt::format("{} sections, {} dump points, strips of {} m, crest at {} m: all must be above 0", n,
+                    points, strip_width, crest_height));
+  std::vector<std::map<int, NamedGrains>> strips(static_cast<std::size_t>(n));
+  std::vector<std::pair<double, double>> first_point;
+  for (const Grain& grain : pile) {
+    const int slice = slice_of(grain, crest_height, n);
+    if (slice < 0) continue;
+    const double y = grain.position.y();
+    strips[static_cast<std::size_t>(slice)][static_cast<int>(std::lround(y / strip_width))].grains.push_back(
+        &grain);
+    if (slice == n - 1 && (grain.dump - 1) % points == 0) first_point.emplace_back(y, grain.mass);
+  }
+  Lateral lateral;
+  lateral.strip_width = strip_width;
+  lateral.point1_toe_width = width_of_bulk(std::move(first_point));
+  for (int k = 0; k < n; ++k) {
+    LateralSection section;
+    section.name = fmt::format("S{}", k + 1);
+    std::vector<NamedGrains> counted;
+    for (auto& [index, strip] : strips[static_cast<std::size_t>(k)]) {
+      if (strip.grains.size() < kLeastStripGrains) continue;
+      section.y.push_back(index * strip_width);
+      counted.push_back(std::move(strip));
+    }
+    for (const Section& strip : tabulate(counted, original).sections) {
+      section.chi.push_back(strip.chi);
+      section.d50_rel.push_back(strip.d50_rel);
+      section.mass.push_back(strip.mass);
+    }
+    section.chi_std = mean_std(section.chi).std;
+    section.chi_range = range_of(section.chi);
+    section.d50_rel_std = mean_std(section.d50_rel).std;
+    lateral.sections.push_back(std::move(section));
+  }
+  return lateral;
+}
+
+}  // namespace scree
