@@ -14,6 +14,7 @@ namespace {
 
 constexpr unsigned kRestGrey = 0xbdbdbd;
 constexpr int kFewestInArrow = 3;
+constexpr double kLeastArrow = 0.1;  // of the longest; shorter ones are dots
 constexpr double kArrowCells = 1.6;  // length of the arrow of the fastest cell
 
 /// Moving grains of one cell: sums by mass.
@@ -51,6 +52,7 @@ std::string arrows(const std::vector<CellFlow>& flows, const VerticalSection& se
   const double scale = kArrowCells * section.cell / fastest;  // m of the picture for 1 m/s
   std::string script = "$arrows << END\n";
   for (const CellFlow& flow : flows) {
+    if (flow.speed() < kLeastArrow * fastest) continue;
     const double dx = scale * flow.vx / flow.mass, dz = scale * flow.vz / flow.mass;
     script += fmt::format("{:.5g} {:.5g} {:.5g} {:.5g}\n", flow.x / flow.mass - dx / 2,
                           flow.z / flow.mass - dz / 2, dx, dz);

@@ -20,6 +20,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kGroundShare = 0.01;  // of a box, above which a cell belongs to the ground
 constexpr double kRoofed = 0.95;       // of its plan, below which a cell lies at the surface
+constexpr double kLeastRock = 0.1;     // of a box, for a grading
 constexpr int kLattice = 8;            // points of the surface along a cell
 
 constexpr InsideCell kNoCell{CellPlace::empty, 0, 0, 0, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN};
@@ -56,8 +57,7 @@ class Collector {
  public:
   Collector(Inside& inside) : inside_(inside), contents_(inside.cells.size()) {}
 
-  /// Calls `part(cell index, share of the volume, whether the centre lies there)` for each cell that the
-  /// grain reaches into.
+  /// Calls `part(cell index, share of the volume)` for each cell that the grain reaches into.
   template <class Part>
   void share_out(const Grain& grain, Part part) const {
     const VerticalSection& s = inside_.section;
@@ -73,16 +73,14 @@ class Collector {
         const Vec3 high = low + Vec3(s.cell, 2 * s.half_width, s.cell);
         const double inside = sphere_in_box(grain.position, r, low, high);
         if (inside <= 1e-12 * whole) continue;
-        const bool centre =
-            (grain.position.array() >= low.array()).all() && (grain.position.array() < high.array()).all();
-        part(static_cast<std::size_t>(k * inside_.nx + i), inside / whole, centre);
+        part(static_cast<std::size_t>(k * inside_.nx + i), inside / whole);
       }
   }
 
   void add(const Grain& grain) {
-    share_out(grain, [&](std::size_t at, double share, bool centre) {
+    share_out(grain, [&](std::size_t at, double share) {
       InsideCell& cell = inside_.cells[at];
-      cell.grains += centre ? 1 : 0;
+      ++cell.grains;
       cell.mass += share * grain.mass;
       cell.solid_volume += share * volume(grain);
       contents_[at].diameters.push_back(grain.diameter);
@@ -92,9 +90,8 @@ class Collector {
   }
 
   void add_fixed(const Grain& ball) {
-    share_out(ball, [&](std::size_t at, double share, bool) {
-      contents_[at].fixed_volume += share * volume(ball);
-    });
+    share_out(ball,
+              [&](std::size_t at, double share) { contents_[at].fixed_volume += share * volume(ball); });
   }
 
   const Content& content(std::size_t at) const { return contents_[at]; }
@@ -213,7 +210,7 @@ Inside analyse_inside(const std::vector<Grain>& pile, const std::vector<Grain>& 
         cell.porosity = 1 - cell.solid_volume / box;
         solid += cell.solid_volume, room += box;
       }
-      if (cell.grains < options.fewest_grains) continue;
+      if (cell.grains < options.fewest_grains || cell.solid_volume < kLeastRock * box) continue;
       describe_grading(cell, content, original);
       if (std::isfinite(cell.chi)) mass += cell.mass, moment += cell.mass * std::abs(cell.chi);
     }

@@ -21,7 +21,7 @@ enum class CellPlace {
 /// meaning: gradings of cells with too few grains, porosity and conductivity outside the interior.
 struct InsideCell {
   CellPlace place = CellPlace::empty;
-  int grains = 0;           ///< with their centre in the box
+  int grains = 0;           ///< that reach into the box
   double mass = 0;          ///< kg
   double solid_volume = 0;  ///< m3 of grains; where soft grains overlap, both count, as the rock is there
   double porosity;          ///< 1 - solid volume / box; below 0 where overlaps are larger than the voids
@@ -56,8 +56,8 @@ struct Inside {
 
 /// What analyse_inside() may be told besides.
 struct InsideOptions {
-  /// Cells with fewer grain centres have no grading.
-  int fewest_grains = 10;
+  /// Cells with fewer grains, or with rock in less than a tenth of their box, have no grading.
+  int fewest_grains = 5;
   /// Void ratio of the original material; by default that of the mean porosity inside, so ratios tell the
   /// effect of where the grain sizes went and of local looseness.
   std::optional<double> original_void_ratio;

@@ -22,7 +22,7 @@ constexpr const char* kDiverging =
 /// Slivers of a grain that reach into a box are not drawn as a cell.
 bool has_rock(const Inside& inside, const InsideCell& cell) {
   const double box = inside.section.cell * inside.section.cell * 2 * inside.section.half_width;
-  return cell.grains > 0 || cell.solid_volume > 0.1 * box;
+  return cell.solid_volume > 0.1 * box;
 }
 
 /// A value of every cell that has rock; those without a number grey.
