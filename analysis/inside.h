@@ -69,7 +69,7 @@ struct InsideOptions {
 /// A cell is in the ground when ground or fixed balls take more than 1 % of its box; otherwise at the surface
 /// when rock stands up to its top over less than 95 % of its plan (looked at on a lattice of an eighth of the
 /// cell; a grain closes the gaps between its neighbours and itself up to sqrt(2) of its radius at the height
-/// of its centre). Solid volumes are exact but for rounding, see sphere_in_box().
+/// of its centre). Solid volumes are sums of sphere_in_box().
 ///
 /// Throws std::invalid_argument for a section that check() refuses, an empty original, fewest_grains below 1
 /// or a void ratio not above 0. A pile without grains in the band gives no cells and NaN totals.
