@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <regex>
+#include <set>
 
 #include "analysis/summary.h"
 
@@ -25,7 +27,10 @@ std::vector<std::string> plain_names(const std::string& experiment) {
     add({"rebound_height_m"});
   else
     add({"slope_angle_deg", "chi_zero_x_over_l", "share_above_1m_orig", "sections", "dumps"});
-  if (experiment == "end_dump" || experiment == "push_dump") add({"point1_toe_width_m"});
+  if (experiment == "end_dump" || experiment == "push_dump")
+    add({"point1_toe_width_m", "inside_porosity", "inside_mean_abs_chi", "inside_ksat_contrast",
+         "layer_coarsening_down", "layer_variance_between", "layer_variance_by_chance", "largest_at_toe",
+         "flow_depth_m", "arrival_energy_j_per_kg", "arrival_share_of_drop"});
   return names;
 }
 
@@ -41,7 +46,9 @@ bool may_give(const std::string& experiment, const std::string& output) {
   static const std::regex cell("([a-z0-9_]+)_(top|middle|bottom)");
   std::smatch parts;
   if (!std::regex_match(output, parts, experiment == "bucket_dump" ? cell : slope)) return false;
-  if (parts[1] == "lateral_chi_std" || parts[1] == "lateral_chi_range" || parts[1] == "lateral_d50_rel_std")
+  static const std::set<std::string> of_bench{"lateral_chi_std", "lateral_chi_range", "lateral_d50_rel_std",
+                                              "flow_speed", "flow_fast"};
+  if (of_bench.contains(parts[1]))
     return experiment != "bucket_dump" && !parts[2].matched && !parts[3].matched;
   const auto& fields = section_fields();
   return std::any_of(fields.begin(), fields.end(),
@@ -113,6 +120,26 @@ Outputs outputs_of(const SeedResult& seed) {
     for (const Section& section : table.sections)
       for (const SectionField& field : section_fields())
         add(fmt::format("{}_{}{}", field.name, section.name, after), field.value(section));
+  }
+  if (seed.inside) {
+    add("inside_porosity", seed.inside->mean_porosity);
+    add("inside_mean_abs_chi", seed.inside->mean_abs_chi);
+    add("inside_ksat_contrast", seed.inside->ksat_grading_contrast);
+  }
+  if (seed.layers) {
+    add("layer_coarsening_down", seed.layers->mean_coarsening_down);
+    add("layer_variance_between", seed.layers->variance_between);
+    add("layer_variance_by_chance", seed.layers->variance_by_chance);
+  }
+  if (seed.largest_at_toe) add("largest_at_toe", *seed.largest_at_toe);
+  if (seed.flow) {
+    for (std::size_t k = 0; k < seed.flow->highest_mean().size(); ++k) {
+      add(fmt::format("flow_speed_S{}", k + 1), seed.flow->highest_mean()[k]);
+      add(fmt::format("flow_fast_S{}", k + 1), seed.flow->highest_fast()[k]);
+    }
+    add("flow_depth_m", seed.flow->largest_depth());
+    add("arrival_energy_j_per_kg", seed.flow->arrival().mean_energy);
+    add("arrival_share_of_drop", seed.flow->arrival().share_of_drop);
   }
   if (seed.lateral) {
     add("point1_toe_width_m", seed.lateral->point1_toe_width);

@@ -14,9 +14,12 @@ namespace scree {
 /// radius_m, runaways; of a drop test rebound_height_m; of a dump slope_angle_deg, sections, dumps,
 /// share_above_1m_orig, chi_zero_x_over_l (where chi changes sign along the slope) and chi_S1, mass_t_S1,
 /// d50_m_S1 ... for each section, and of a dump over a bench lateral_chi_std_S1, lateral_chi_range_S1,
-/// lateral_d50_rel_std_S1 (over strips across the slope) and point1_toe_width_m. Tables beside the scenario's
-/// own number of sections have names like chi_S1of3, piles before the last dump names like chi_S1_dump3 or
-/// chi_S1of3_dump3. A number that does not exist is left out.
+/// lateral_d50_rel_std_S1 (over strips across the slope, lateral.h), point1_toe_width_m, flow_speed_S1 and
+/// flow_fast_S1 (highest mean and 95th percentile of speed, m/s), flow_depth_m, arrival_energy_j_per_kg,
+/// arrival_share_of_drop (flow.h), inside_porosity, inside_mean_abs_chi, inside_ksat_contrast (inside.h),
+/// layer_coarsening_down, layer_variance_between, layer_variance_by_chance (layers.h), largest_at_toe. Tables
+/// beside the scenario's own number of sections have names like chi_S1of3, piles before the last dump names
+/// like chi_S1_dump3 or chi_S1of3_dump3. A number that does not exist is left out.
 Outputs outputs_of(const SeedResult& seed);
 std::vector<Outputs> outputs_of(const std::vector<SeedResult>& seeds);
 

@@ -31,7 +31,7 @@ void check(const PoreMaterial& m) {
 /// Taylor's formula but for its constant and the properties of water, which drop out of a ratio.
 double taylor(const PoreMaterial& m) {
   check(m);
-  return m.d50 * m.d50 * std::pow(m.void_ratio, 3) / (1 + m.void_ratio);
+  return std::pow(m.d50, 1.5) * std::pow(m.void_ratio, 3) / (1 + m.void_ratio);
 }
 
 }  // namespace

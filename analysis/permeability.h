@@ -27,8 +27,8 @@ double conductivity_kozeny_carman(const PoreMaterial& material);
 /// Conductivity of `material` over that of `original` by the modified Kozeny-Carman formula. Throws as above.
 double conductivity_ratio_kozeny_carman(const PoreMaterial& material, const PoreMaterial& original);
 
-/// Conductivity of `material` over that of `original` after Taylor, Fundamentals of Soil Mechanics (1948),
-/// with the median diameter: k proportional to D50^2 e^3 / (1 + e). Throws as above.
+/// Conductivity of `material` over that of `original` after Taylor, Fundamentals of Soil Mechanics (1948), as
+/// the thesis's printed ratios follow it: k proportional to D50^1.5 e^3 / (1 + e). Throws as above.
 double conductivity_ratio_taylor(const PoreMaterial& material, const PoreMaterial& original);
 
 }  // namespace scree

@@ -10,6 +10,9 @@
 #include <optional>
 #include <string_view>
 
+#include "analysis/flow_picture.h"
+#include "analysis/inside_pictures.h"
+#include "analysis/outputs.h"
 #include "analysis/report_text.h"
 #include "analysis/summary.h"
 #include "sim/io/text_file.h"
@@ -211,6 +214,63 @@ std::string section_tables(const RunResult& result) {
              : out + "<p class=\"under\">Ratios are over the same diameter of the rock as dumped.</p>\n";
 }
 
+bool reaches(const Snapshot& snapshot, const VerticalSection& section) {
+  return std::any_of(snapshot.grains.begin(), snapshot.grains.end(), [&](const Grain& grain) {
+    return std::abs(grain.position.y() - section.y0) < section.half_width;
+  });
+}
+
+/// Layers, cells and flow of the first seed.
+std::vector<Picture> draw_inside_of(const RunResult& result, const std::filesystem::path& folder) {
+  std::vector<Picture> pictures;
+  if (result.seeds.empty() || !result.seeds.front().inside) return pictures;
+  const SeedResult& seed = result.seeds.front();
+  const VerticalSection& section = seed.inside->section;
+  if (!seed.inside->cells.empty()) {
+    pictures.push_back(draw_layers(seed.final_state.grains, seed.fixed, section, folder / "layers.png"));
+    pictures.push_back(draw_inside(*seed.inside, folder / "inside.png"));
+  }
+  if (seed.flow && seed.flow->liveliest() && reaches(*seed.flow->liveliest(), section))
+    pictures.push_back(draw_velocity(*seed.flow->liveliest(), seed.fixed, section, folder / "velocity.png"));
+  return pictures;
+}
+
+std::string inside_table(const RunResult& result) {
+  struct Row {
+    const char *name, *words, *unit;
+  };
+  static constexpr Row kRows[] = {
+      {"largest_at_toe", "share of the coarsest tenth that lies in the lowest sixth of the slope", ""},
+      {"inside_mean_abs_chi", "mean |χ| over the cells inside", ""},
+      {"inside_ksat_contrast", "hydraulic conductivity by grading, 90th over 10th percentile of the cells",
+       ""},
+      {"inside_porosity", "porosity of the cells wholly inside (overlaps of soft spheres count as rock)", ""},
+      {"layer_coarsening_down", "χ of the lower half of a load's layer less that of its upper half", ""},
+      {"layer_variance_between", "share of the scatter of grain size that lies between layers", ""},
+      {"layer_variance_by_chance", "the same if loads were mixed", ""},
+      {"point1_toe_width_m", "width at the toe of what the first dump point brought", "m"},
+      {"flow_depth_m", "depth of the flow at the middle of the slope, largest", "m"},
+      {"arrival_energy_j_per_kg", "energy of rock on arrival in the lowest section", "J/kg"},
+      {"arrival_share_of_drop", "the same over g times the height of the bench", ""},
+  };
+  const std::vector<Outputs> seeds = outputs_of(result.seeds);
+  std::string rows;
+  for (const Row& row : kRows) {
+    std::vector<double> values;
+    for (const Outputs& seed : seeds)
+      if (const auto found = seed.find(row.name); found != seed.end()) values.push_back(found->second);
+    const MeanStd both = mean_std(values);
+    if (both.n == 0) continue;
+    rows += fmt::format(
+        "<tr><td class=\"word\">{}</td><td>{}</td></tr>\n", row.words,
+        value_cell(row.name, both.mean, both.n > 1 ? std::optional(both.std) : std::nullopt, row.unit));
+  }
+  if (rows.empty()) return rows;
+  return "<div class=\"wide\"><table><thead><tr><th class=\"word\">Inside and flow</th><th>This "
+         "run</th></tr></thead><tbody>\n" +
+         rows + "</tbody></table></div>\n";
+}
+
 std::string facts(const RunResult& result) {
   double particles = 0, fixed = 0, mass = 0, simulated = 0, moved = 0, seconds = 0, overlap = 0, lost = 0,
          lost_mass = 0;
@@ -220,7 +280,7 @@ std::string facts(const RunResult& result) {
   for (const SeedResult& seed : result.seeds) {
     seeds += fmt::format("{}{}", seeds.empty() ? "" : ", ", seed.seed);
     particles += static_cast<double>(seed.particles);
-    fixed += static_cast<double>(seed.fixed_balls);
+    fixed += static_cast<double>(seed.fixed.size());
     mass += seed.mass;
     simulated += seed.simulated_seconds;
     moved += seed.particle_steps;
@@ -293,6 +353,7 @@ void write_report(const RunResult& result, const std::filesystem::path& folder, 
   page += figures("The pile", draw_pile(result, scene, pictures));
   page += comparison_table(result);
   page += figures("Charts", draw_charts(result, scene, pictures));
+  page += figures("Inside the pile, and the flow", draw_inside_of(result, pictures)) + inside_table(result);
   page += section_tables(result) + facts(result) + kGlossary + "</body>\n</html>\n";
   write_text_file(folder / "report.html", page);
 }

@@ -7,7 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "analysis/flow.h"
+#include "analysis/inside.h"
 #include "analysis/lateral.h"
+#include "analysis/layers.h"
 #include "analysis/repose_angle.h"
 #include "analysis/segregation.h"
 
@@ -17,8 +20,7 @@ namespace scree {
 struct SeedResult {
   std::uint64_t seed = 0;
   std::int64_t particles = 0;  ///< movable spheres
-  std::int64_t fixed_balls = 0;
-  double mass = 0;  ///< kg put in
+  double mass = 0;             ///< kg put in
   double wall_seconds = 0, simulated_seconds = 0;
   double particle_steps = 0;  ///< sum over steps of spheres moved
   std::int64_t steps = 0;
@@ -33,10 +35,15 @@ struct SeedResult {
   Snapshot final_state;
   std::vector<Grain> original;  ///< every grain as generated (ids, diameters, masses)
   std::vector<SectionTable>
-      sections;  ///< one for each number of sections asked for, or of the cells of a half cone
-  std::optional<Lateral> lateral;              ///< dump over a bench: strips across the slope
-  std::optional<ReposeAngle> repose;           ///< repose test
-  std::optional<double> rebound_height;        ///< drop test, m
+      sections;              ///< one for each number of sections asked for, or of the cells of a half cone
+  std::vector<Grain> fixed;  ///< balls of the base layer
+  std::optional<Lateral> lateral;        ///< dump over a bench: strips across the slope
+  std::optional<Inside> inside;          ///< dump over a bench: section through the first dump point
+  std::optional<Layers> layers;          ///< dump over a bench: layers in that section
+  std::optional<double> largest_at_toe;  ///< share of the mass above the original D90 in the lowest sixth
+  std::optional<FlowRecorder> flow;      ///< dump over a bench: speeds and depth of the flow
+  std::optional<ReposeAngle> repose;     ///< repose test
+  std::optional<double> rebound_height;  ///< drop test, m
   std::vector<std::array<double, 2>> profile;  ///< slope profile (x, z) m: surface along the dump axis
   std::optional<double> slope_angle;           ///< degrees, fitted to the middle of the slope
 };

@@ -9,6 +9,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "analysis/permeability.h"
+
 namespace scree {
 
 namespace {
@@ -39,6 +41,11 @@ std::vector<double> sieves_for(double smallest, double largest) {
   if (first != all.begin()) --first;
   if (last != all.end()) ++last;
   return {first, last};
+}
+
+/// At a void ratio of 1, which drops out of ratios.
+PoreMaterial pore_material(const PassingCurve& curve) {
+  return {curve.diameter(0.10), curve.diameter(0.50), curve.diameter(0.60) / curve.diameter(0.10), 1};
 }
 
 }  // namespace
@@ -74,6 +81,7 @@ SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<G
     section.d10 = diameter(0.10);
     section.d15 = diameter(0.15);
     section.d50 = diameter(0.50);
+    section.d60 = diameter(0.60);
     section.d80 = diameter(0.80);
     section.d90 = diameter(0.90);
     section.d95 = diameter(0.95);
@@ -82,6 +90,8 @@ SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<G
     section.d80_rel = section.d80 / whole.diameter(0.80);
     section.d90_rel = section.d90 / whole.diameter(0.90);
     section.d95_rel = section.d95 / whole.diameter(0.95);
+    section.ksat_rel =
+        curve ? conductivity_ratio_kozeny_carman(pore_material(*curve), pore_material(whole)) : nan;
     for (const double sieve : table.sieves) section.passing.push_back(curve ? curve->passing(sieve) : nan);
     section.share_above_1m =
         curve ? section.mass * (1 - curve->passing(1)) : 0;  // kg, until the sum is known

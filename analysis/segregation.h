@@ -40,7 +40,9 @@ struct Section {
   double chi = 0;                                      ///< segregation degree; NaN when the section is empty
   double d10 = 0, d50 = 0, d80 = 0, d90 = 0, d95 = 0;  ///< m; NaN when empty
   double d10_rel = 0, d50_rel = 0, d80_rel = 0, d90_rel = 0, d95_rel = 0;  ///< over the original material's
-  double d15 = 0;                                                          ///< m
+  double d15 = 0, d60 = 0;                                                 ///< m
+  double ksat_rel =
+      0;  ///< conductivity over the original's at equal void ratio (Kozeny-Carman); NaN when empty
   double share_above_1m = 0;    ///< of the mass of grains above 1 m in all sections; NaN without such grains
   std::vector<double> passing;  ///< shares at the sieves of SectionTable::sieves
 };

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "analysis/half_cone.h"
 #include "analysis/outputs.h"
 #include "analysis/slope_profile.h"
+#include "analysis/toe_share.h"
 #include "scree_version.h"
 #include "sim/scene/ground.h"
 #include "sim/world/mesh_contact.h"
@@ -15,23 +17,55 @@
 namespace scree {
 namespace {
 constexpr double kOverlapWarning =
-    0.10;  // of the smaller radius; physics of soft spheres beyond it is doubtful
+    0.10;                         // of the smaller radius; physics of soft spheres beyond it is doubtful
+constexpr double kHalfWidth = 4;  // of the section through a pile, m: half a truck bed or blade
+constexpr double kCellsInHeight = 0.1;  // of the bench, size of the section's cells
+constexpr double kUsualPorosity = 0.4;  // of a pile too thin to have an inside
 
-int dump_points(const Scenario& scenario) {
-  if (const auto* dump = std::get_if<EndDump>(&scenario.experiment))
-    return static_cast<int>(dump->points.size());
-  if (const auto* push = std::get_if<PushDump>(&scenario.experiment))
-    return static_cast<int>(push->points.size());
-  return 1;
+std::vector<double> dump_points(const Scenario& scenario) {
+  if (const auto* dump = std::get_if<EndDump>(&scenario.experiment)) return dump->points;
+  if (const auto* push = std::get_if<PushDump>(&scenario.experiment)) return push->points;
+  return {0.0};
+}
+
+double first_point(const Scenario& scenario) {
+  return dump_points(scenario).front();
+}
+
+// A section through the first dump point.
+void analyse_inside_of(const Scenario& scenario, const BenchSpec& bench, const std::vector<Grain>& dumped,
+                       SeedResult& r) {
+  VerticalSection section;
+  section.y0 = first_point(scenario);
+  section.half_width = kHalfWidth;
+  section.cell = kCellsInHeight * bench.height;
+  section.bench = BenchOutline{bench.height, bench.slope_deg};
+  r.inside = analyse_inside(r.final_state.grains, r.fixed, dumped, section);
+  const double porosity = r.inside->mean_porosity;  // soft spheres may overlap by more than the voids
+  r.layers = analyse_layers(r.final_state.grains, dumped, section,
+                            std::isfinite(porosity) ? std::clamp(porosity, 0.0, 0.9) : kUsualPorosity);
+  r.largest_at_toe = share_reaching_toe(r.final_state.grains, bench.height, dumped);
 }
 
 }  // namespace
 
-SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outcome) {
+std::optional<FlowRecorder> make_flow_recorder(const Scenario& scenario) {
+  const BenchSpec* bench = bench_of(scenario);
+  if (bench == nullptr) return std::nullopt;
+  FlowSettings settings;
+  settings.bench = {bench->height, bench->slope_deg};
+  settings.sections = scenario.output.sections;
+  settings.y0 = first_point(scenario);
+  return FlowRecorder(settings);
+}
+
+SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outcome,
+                   std::optional<FlowRecorder> flow) {
   SeedResult r;
   r.seed = seed;
   r.particles = static_cast<std::int64_t>(outcome.original.size());
-  r.fixed_balls = outcome.fixed_balls;
+  r.fixed = std::move(outcome.fixed);
+  r.flow = std::move(flow);
   for (const Grain& g : outcome.original) r.mass += g.mass;
   r.wall_seconds = outcome.wall_seconds;
   r.simulated_seconds = outcome.simulated_seconds;
@@ -71,9 +105,11 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
     };
     add_tables(r.final_state.grains, last);
     for (const RunOutcome::AfterDump& after : outcome.after_dumps) add_tables(after.pile.grains, after.dump);
-    if (last > 0)
-      r.lateral = analyse_lateral(r.final_state.grains, dumped_until(last), bench->height,
-                                  scenario.output.sections, dump_points(scenario));
+    if (const std::vector<Grain> dumped = dumped_until(last); !dumped.empty()) {
+      r.lateral = analyse_lateral(r.final_state.grains, dumped, bench->height, scenario.output.sections,
+                                  static_cast<int>(dump_points(scenario).size()));
+      analyse_inside_of(scenario, *bench, dumped, r);
+    }
     r.profile = slope_profile(r.final_state.grains);
     r.slope_angle = slope_angle(r.profile, bench->height);
   } else if (std::holds_alternative<BucketDump>(scenario.experiment)) {

@@ -6,8 +6,13 @@
 
 namespace scree {
 
-/// Analyses one seed: sections of the slope, slope angle and profile, or repose angle.
-SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outcome);
+/// What records the flow of a dump over a bench through RunHooks::look; none for other experiments.
+std::optional<FlowRecorder> make_flow_recorder(const Scenario& scenario);
+
+/// Analyses one seed: sections of the slope, its inside, slope angle and profile, or repose angle. `flow`: of
+/// the same run.
+SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outcome,
+                   std::optional<FlowRecorder> flow);
 
 /// Puts the seeds together, compares with the reference cases and adds what a reader must know.
 RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,

@@ -70,6 +70,8 @@ void run_seed(const scree::Scenario& scenario, SeedRun& run, int threads, const 
       trajectory->write(snapshot, step);
     };
   }
+  std::optional<scree::FlowRecorder> flow = scree::make_flow_recorder(scenario);
+  if (flow) hooks.look = [&](const scree::Snapshot& snapshot) { flow->add(snapshot); };
   hooks.progress = [&](const scree::RunProgress& p) {
     display.update(index, p);
     return interrupted == 0;
@@ -77,7 +79,8 @@ void run_seed(const scree::Scenario& scenario, SeedRun& run, int threads, const 
   try {
     scree::RunOutcome outcome = scree::run_scenario(scenario, run.seed, threads, hooks);
     run.notes = outcome.notes;
-    run.result = std::make_unique<scree::SeedResult>(scree::analyse(scenario, run.seed, std::move(outcome)));
+    run.result = std::make_unique<scree::SeedResult>(
+        scree::analyse(scenario, run.seed, std::move(outcome), std::move(flow)));
   } catch (const std::exception& error) {
     run.failure = error.what();
   }

@@ -30,6 +30,8 @@ struct RunHooks {
   std::function<void(const std::vector<Grain>& grains, const std::vector<Grain>& fixed)> begin;
   /// A frame of the trajectory.
   std::function<void(const Snapshot&, std::int64_t step)> frame;
+  /// The movable spheres, ten times a second of simulated time.
+  std::function<void(const Snapshot&)> look;
   /// Some ten times a second of simulated time; returning false ends the run, keeping what is done.
   std::function<bool(const RunProgress&)> progress;
 };
@@ -43,8 +45,8 @@ struct RunOutcome {
   };
   std::vector<AfterDump> after_dumps;    ///< the piles asked for in output.after_dumps, but for the last
   std::vector<Grain> original;           ///< every grain as generated
+  std::vector<Grain> fixed;              ///< balls of the base layer
   std::optional<double> rebound_height;  ///< drop test: highest rise of its lowest point after the fall, m
-  std::int64_t fixed_balls = 0;
   WorldStatistics statistics;
   double simulated_seconds = 0, wall_seconds = 0;
   bool at_rest = true;  ///< every load came to rest before stop.max_time

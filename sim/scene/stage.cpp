@@ -76,14 +76,14 @@ void Stage::add_tools() {
 void Stage::begin(const std::vector<NewSphere>& fixed, const std::vector<std::vector<NewSphere>>& loads) {
   loads_ = loads;
   world_->add_spheres(fixed);
-  outcome_.fixed_balls = static_cast<std::int64_t>(fixed.size());
+  outcome_.fixed = world_->fixed_balls();
   auto id = static_cast<std::int64_t>(fixed.size());
   for (const auto& load : loads_)
     for (const NewSphere& s : load) {
       const double mass = scenario_.material.density * std::numbers::pi / 6.0 * std::pow(s.diameter, 3);
       outcome_.original.push_back({id++, s.position, Vec3::Zero(), s.diameter, mass, s.dump});
     }
-  if (hooks_.begin) hooks_.begin(outcome_.original, world_->fixed_balls());
+  if (hooks_.begin) hooks_.begin(outcome_.original, outcome_.fixed);
 }
 
 void Stage::add_load() {
@@ -102,6 +102,7 @@ bool Stage::tick(double until, const char* stage, double share) {
     next_frame_ += interval;
   }
   world_->advance_to(until);
+  if (hooks_.look) hooks_.look(world_->snapshot());
   progress_.share = share;
   progress_.time = world_->time();
   progress_.stage = stage;

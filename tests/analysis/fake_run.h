@@ -32,7 +32,7 @@ inline SeedResult fake_seed(std::uint64_t number) {
   }
   seed.original = seed.final_state.grains;
   seed.particles = 5000;
-  seed.fixed_balls = 1200;
+  seed.fixed.resize(1200);
   seed.steps = 400000;
   seed.particle_steps = 1.2e9;
   seed.wall_seconds = 420;
