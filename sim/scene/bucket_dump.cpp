@@ -37,8 +37,9 @@ RunOutcome run_bucket_dump(const Scenario& scenario, const BucketDump& e, std::u
               {r, r, 2 * e.wall_height + 3 * e.height + e.diameter});
   RockWorld& world = stage.world();
   const Pose pose = bucket_pose(e);
-  const DumpLoads loads = make_dump_loads(scenario, e.mass, e.buckets, {0.0}, {{e.diameter, 0, e.height}},
-                                          seed, [&](double) { return pose; });
+  const DumpLoads loads =
+      make_dump_loads(scenario, e.mass, std::vector<Pose>(static_cast<std::size_t>(e.buckets), pose),
+                      {{e.diameter, 0, e.height}}, seed);
   for (const double height : loads.heights)
     if (height > e.height)
       throw std::invalid_argument(

@@ -56,8 +56,10 @@ RunOutcome run_end_dump(const Scenario& scenario, const EndDump& e, std::uint64_
   RockWorld& world = stage.world();
 
   const double start_tilt = e.truck.release == Release::hoist ? 0.0 : e.truck.tilt_deg;
-  const DumpLoads loads = make_dump_loads(scenario, e.payload, e.dumps, e.points, {e.truck.load_box}, seed,
-                                          [&](double y) { return truck_pose(e, y, start_tilt); });
+  std::vector<Pose> poses;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(e.dumps); ++k)
+    poses.push_back(truck_pose(e, e.points[k % e.points.size()], start_tilt));
+  const DumpLoads loads = make_dump_loads(scenario, e.payload, poses, {e.truck.load_box}, seed);
   stage.begin(make_base_layer(e.bench, seed), loads.spheres);
   world.add_mesh(make_bench(e.bench), stage.surface({}, {}), Motion());
   stage.add_tools();
@@ -66,9 +68,9 @@ RunOutcome run_end_dump(const Scenario& scenario, const EndDump& e, std::uint64_
   const TriangleMesh gate_mesh = stage.read(e.truck.gate_mesh, e.truck.scale);
   const Surface surface = stage.surface(e.truck.mu, e.truck.mu_r);
   for (int dump = 1; dump <= e.dumps; ++dump) {
-    const double y = loads.points[static_cast<std::size_t>(dump - 1)];
+    const Pose& pose = poses[static_cast<std::size_t>(dump - 1)];
+    const double y = pose.position.y();
     const double share = static_cast<double>(dump - 1) / e.dumps, part = 1.0 / e.dumps;
-    const Pose pose = truck_pose(e, y, start_tilt);
     stage.set_dump(dump, e.dumps);
     const int bed = world.add_mesh(bed_mesh, surface, Motion::fixed(pose));
     const int gate = world.add_mesh(gate_mesh, surface, Motion::fixed(pose));

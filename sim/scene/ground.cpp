@@ -53,6 +53,10 @@ double ball_radius(BaseLayer layer) {
   return layer == BaseLayer::none ? 0.0 : 0.5 * kBallDiameter;
 }
 
+double standing_height(const BenchSpec& b) {
+  return b.height + (b.layer_on_top ? ball_radius(b.base_layer) : 0.0);
+}
+
 TriangleMesh make_bench(const BenchSpec& b) {
   const double toe = toe_of(b), half = 0.5 * b.width;
   // Surface profile from the back of the top to the end of the floor, and the same below.
@@ -86,7 +90,7 @@ std::vector<NewSphere> make_base_layer(const BenchSpec& b, std::uint64_t seed) {
   const double angle = radians(b.slope_deg), slope = b.height / std::sin(angle), half = 0.5 * b.width;
   const double pitch = kBallDiameter * std::sqrt(0.75);
   // Rows at equal distances along the surface, one of them on the crest.
-  const int first = -static_cast<int>((b.top_length - 0.5 * kBallDiameter) / pitch);
+  const int first = b.layer_on_top ? -static_cast<int>((b.top_length - 0.5 * kBallDiameter) / pitch) : 1;
   const int last = static_cast<int>((slope + b.floor_length - 0.5 * kBallDiameter) / pitch);
   for (int row = first; row <= last; ++row) {
     const double s = row * pitch;

@@ -15,14 +15,19 @@ double toe_of(const BenchSpec& bench);
 /// How far the balls of a layer stand out of the surface that carries their centres (m); 0 without a layer.
 double ball_radius(BaseLayer layer);
 
+/// Height (m) on which loads and blades stand on the bench top: that of its balls, where it has some.
+double standing_height(const BenchSpec& bench);
+
 /// The bench as a closed solid, 5 m deep below its floor.
 TriangleMesh make_bench(const BenchSpec& bench);
 
-/// Fixed balls that cover top, slope and floor: rows across the slope at a hexagonal pitch, so that no
-/// straight groove leads down it. Their centres lie on the surface. The source does not say how deep they
-/// sit; with the centres on the surface the masses of the highest and the lowest of six sections of case A1
-/// come out as printed (32 t, 375 t), with balls that rest on the surface they do not (50 t, 204 t). `mixed`
-/// puts four 0.5 m balls at half of the places, drawn at random (thesis, appendix F).
+/// Fixed balls that cover slope, floor and, with `layer_on_top`, the top: rows across the slope at a
+/// hexagonal pitch, so that no straight groove leads down it. Their centres lie on the surface. The source
+/// does not say how deep they sit; with the centres on the surface the masses of the highest and the lowest
+/// of six sections of case A1 come out as printed (32 t, 375 t), with balls that rest on the surface they do
+/// not (50 t, 204 t). `mixed` puts four 0.5 m balls at half of the places, drawn at random (thesis, appendix
+/// F). Before a plane top the highest row lies a pitch below the crest, so that no ball stands out above the
+/// top.
 std::vector<NewSphere> make_base_layer(const BenchSpec& bench, std::uint64_t seed);
 
 /// The same on a square floor at z = 0 from -half_width to half_width.

@@ -45,6 +45,7 @@ struct BenchSpec {
   double width = 100;        ///< m, y from -width/2 to width/2
   BaseLayer base_layer =
       BaseLayer::homogeneous;  ///< fixed balls: 1 m (homogeneous), or 0.5 and 1 m (mixed, appendix F)
+  bool layer_on_top = true;    ///< they cover the bench top too, as in the thesis; without them it is plane
 };
 
 enum class Release { open_gate, hoist };
@@ -80,19 +81,29 @@ struct BladeSpec {
   double scale = 1.0;
   double velocity = 0.2;  ///< m/s
   double overshoot = 0;   ///< how far beyond the crest it goes, m
+  /// Of the cutting edge over the bench top (over its balls), m, one after another from high to low.
+  std::vector<double> heights{0.0};
+  int passes = 1;            ///< most passes at one height
+  double left_share = 0.05;  ///< of what was dumped; with less rock above its edge no further pass is made
   std::optional<double> mu, mu_r;
 };
 
-/// Loads that lie on the bench top, between side walls, and are pushed over the crest.
+enum class PushAfter { each_load, all_loads };
+
+/// Loads on the bench top that are pushed over the crest: laid between side walls, or heaps that a blade
+/// pushes from further behind or levels.
 struct PushDump {
   BenchSpec bench;
   BladeSpec blade;
   Vec3 load_box{8, 8, 4};  ///< length, width, height of the space the load is laid into, m
   double distance = 0;     ///< of the load's front from the crest, m
-  double settle_s = 1.0;   ///< time the load settles before its front is opened
+  bool side_walls = true;  ///< the load lies between walls; without them it is a heap that spills sideways
+  PushAfter push_after = PushAfter::each_load;
+  double settle_s = 1.0;  ///< time the load settles before its front is opened, with side walls
   int dumps = 4;
   double payload = 300e3;           ///< kg
   std::vector<double> points{0.0};  ///< y of the places (m), visited in turn
+  std::vector<double> rows{0.0};    ///< how far behind `distance` (m); after all points the next row
 };
 
 /// Container filled with rock, then lifted: the repose angle test.

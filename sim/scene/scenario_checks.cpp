@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "sim/io/mesh.h"
+#include "sim/scene/blade_passes.h"
 #include "sim/scene/estimate.h"
 #include "sim/scene/scenario_read.h"
 #include "sim/scene/scenario_values.h"
@@ -87,16 +88,70 @@ class Checks {
 
   void push_dump(const PushDump& e) {
     bench_loads(e, e.load_box, "experiment.load_box_m", "the load");
-    if (notes_.good({&e.load_box, &e.distance, &e.bench.top_length}) &&
-        e.distance + e.load_box.x() + 1 > e.bench.top_length)
-      fail(&e.distance,
-           fmt::format("experiment.distance_m: a load {} m long at {} m from the crest, and the blade "
-                       "behind it, do not lie on a bench top {} m long",
-                       e.load_box.x(), e.distance, e.bench.top_length));
+    if (notes_.good({&e.load_box, &e.distance, &e.rows, &e.bench.top_length}) && !e.rows.empty()) {
+      const auto last = std::max_element(e.rows.begin(), e.rows.end());
+      const double distance = e.distance + *last;
+      // A heap spreads backwards by some of its height.
+      const double room = e.side_walls ? 1 : 1 + e.load_box.z();
+      if (distance + e.load_box.x() + room > e.bench.top_length)
+        fail(*last > 0 ? place_of(e.rows, last - e.rows.begin()) : &e.distance,
+             fmt::format(
+                 "experiment.{}: a load {} m long at {} m from the crest, and the blade behind it, "
+                 "do not lie on a bench top {} m long{}",
+                 *last > 0 ? fmt::format("rows_m[{}]", last - e.rows.begin()) : "distance_m", e.load_box.x(),
+                 distance, e.bench.top_length,
+                 e.side_walls ? "" : fmt::format("; a heap and the blade need {} m behind the load", room)));
+    }
     if (notes_.good({&e.load_box, &e.distance, &e.blade.overshoot}) &&
         e.blade.overshoot <= -(e.distance + e.load_box.x()))
       fail(&e.blade.overshoot,
            "experiment.blade.overshoot_m: the blade would end where it starts, or behind");
+    if (notes_.good({&e.blade.heights}))
+      for (std::size_t i = 1; i < e.blade.heights.size(); ++i)
+        if (e.blade.heights[i] >= e.blade.heights[i - 1])
+          fail(&e.blade.heights[i],
+               fmt::format("experiment.blade.heights_m[{}]: {} m is not below the height before ({} m); the "
+                           "blade cuts from the top down",
+                           i, e.blade.heights[i], e.blade.heights[i - 1]));
+    if (notes_.good({&e.side_walls})) e.side_walls ? walled_push(e) : free_push(e);
+  }
+
+  /// Between side walls the blade goes once over the ground, with the load that lies there.
+  void walled_push(const PushDump& e) {
+    const char* way_out = "between side walls; set side_walls: false";
+    if (notes_.good({&e.blade.passes}) && e.blade.passes > 1)
+      fail(&e.blade.passes,
+           fmt::format("experiment.blade.passes: {}, but the blade passes once {}", e.blade.passes, way_out));
+    if (notes_.good({&e.blade.heights}) && e.blade.heights != std::vector<double>{0.0})
+      fail(&e.blade.heights, fmt::format("experiment.blade.heights_m: the blade goes over the ground, at "
+                                         "height 0, {}",
+                                         way_out));
+    if (e.push_after == PushAfter::all_loads)
+      fail(&e.side_walls,
+           fmt::format("experiment.push_after: all_loads, but the blade comes after each load {}", way_out));
+  }
+
+  void free_push(const PushDump& e) {
+    if (e.push_after == PushAfter::all_loads && notes_.good({&s_.output.after_dumps}) &&
+        !s_.output.after_dumps.empty())
+      fail(&s_.output.after_dumps,
+           "output.after_dumps: with push_after all_loads there is no pile before the last dump; leave it "
+           "empty");
+    if (!notes_.good({&e.blade.scale, &e.bench.width}) || !std::filesystem::exists(e.blade.mesh)) return;
+    const LoadedMesh blade = load_mesh(e.blade.mesh, e.blade.scale);
+    if (!blade.report.errors.empty()) return;
+    const BladeReach reach = reach_of(blade.mesh);
+    const double wide = 2 * std::max(-reach.low_y, reach.high_y);
+    if (wide > e.bench.width)
+      fail(&e.bench.width, fmt::format("experiment.bench.width_m: {} m is narrower than the blade ({:.3g} m)",
+                                       e.bench.width, wide));
+  }
+
+  /// Key of a list's entry, of the list where it has a default.
+  template <class List, class Index>
+  const void* place_of(const List& list, Index index) const {
+    const void* entry = &list[static_cast<std::size_t>(index)];
+    return notes_.places.contains(entry) ? entry : static_cast<const void*>(&list);
   }
 
   /// What holds for all experiments that bring loads over a crest; `what` holds a load.
@@ -122,10 +177,8 @@ class Checks {
       return fail(&e.bench.width, fmt::format("experiment.bench.width_m: {} m is narrower than {} ({} m)",
                                               e.bench.width, what, box.y()));
     for (std::size_t i = 0; i < e.points.size(); ++i) {
-      const void* place =
-          notes_.places.contains(&e.points[i]) ? &e.points[i] : static_cast<const void*>(&e.points);
       if (std::abs(e.points[i]) > reach)
-        fail(place,
+        fail(place_of(e.points, i),
              fmt::format("experiment.points_m[{}]: a load box {} m wide at {} m does not fit the bench {} m "
                          "wide; allowed {} to {} m",
                          i, box.y(), e.points[i], e.bench.width, -reach, reach));

@@ -55,7 +55,10 @@ Fields keys(BenchSpec& b) {
        "Length of the floor in front of the toe."},
       {"width_m", Number{&b.width, kMetre, {0.1, 1000}}, "Width of bench and floor along the crest."},
       {"base_layer", base_layer(b.base_layer),
-       "Fixed balls on slope and floor: none, homogeneous (1 m), or mixed (0.5 m and 1 m)."},
+       "Fixed balls on top, slope and floor: none, homogeneous (1 m), or mixed (0.5 m and 1 m)."},
+      {"layer_on_top", Boolean{&b.layer_on_top},
+       "Whether the base layer covers the bench top too, as in the thesis. Between its balls lies room for "
+       "much fine rock; a top that trucks and dozers have levelled is plane: false."},
   };
 }
 
@@ -84,7 +87,7 @@ Fields keys(EndDump& e) {
   return {
       {"bench", Group{[&e] { return keys(e.bench); }}, "The bench the load is dumped over."},
       {"truck", Group{[&e] { return keys(e.truck); }}, "The truck."},
-      {"dumps", Integer{&e.dumps, {1, 500}}, "Number of truck loads."},
+      {"dumps", Integer{&e.dumps, {1, 1000}}, "Number of truck loads."},
       {"payload_t", Number{&e.payload, "t", {0.001, 5000}, 1000}, "Mass of one load."},
       {"points_m", Numbers{&e.points, kMetre, {-500, 500}, {1, 500}},
        "Places along the crest where the truck dumps, visited in turn; 0 is the middle."},
@@ -98,6 +101,14 @@ Fields keys(BladeSpec& b) {
       {"mesh_scale", Number{&b.scale, "m", kScale}, kScaleDoc},
       {"velocity_m_per_s", Number{&b.velocity, "m/s", {0.001, 10}}, "Speed of the push."},
       {"overshoot_m", Number{&b.overshoot, kMetre, {-10, 10}}, "How far beyond the crest the blade goes."},
+      {"heights_m", Numbers{&b.heights, kMetre, {0, 50}, {1, 20}},
+       "Heights of the cutting edge over the bench top, or over its balls, one after another from high to "
+       "low (without side walls)."},
+      {"passes", Integer{&b.passes, {1, 100}},
+       "Most passes at one height, each along the lane in which most rock stands above the edge (without "
+       "side walls)."},
+      {"left_share", Number{&b.left_share, kNone, {0, 1, false, true}},
+       "Share of the loads' mass; with less of it on the bench above the edge no further pass is made."},
       {"mu", NumberOr{&b.mu, kFriction, kRock}, kMuDoc},
       {"mu_r", NumberOr{&b.mu_r, kFriction, kRock}, kMuRDoc},
   };
@@ -110,12 +121,19 @@ Fields keys(PushDump& p) {
       {"load_box_m", Vector{&p.load_box, kMetre, {0.1, 50}},
        "Length, width and height of the space on the bench top that the load is laid into."},
       {"distance_m", Number{&p.distance, kMetre, {0, 500}}, "Distance of the load's front from the crest."},
+      {"side_walls", Boolean{&p.side_walls},
+       "Whether the load lies between side walls and the blade pushes it once, as in the thesis; without "
+       "them it falls on the bench top as a heap, and rock spills past the ends of the blade."},
+      {"push_after", choice(p.push_after, {"each_load", "all_loads"}),
+       "When the blade comes: after each load, or when all heaps are there (without side walls)."},
       {"settle_s", Number{&p.settle_s, kSecond, {0, 60}},
-       "Time the load settles before its front is opened."},
-      {"dumps", Integer{&p.dumps, {1, 500}}, "Number of loads."},
+       "Time the load settles before its front is opened (side walls only)."},
+      {"dumps", Integer{&p.dumps, {1, 1000}}, "Number of loads."},
       {"payload_t", Number{&p.payload, "t", {0.001, 5000}, 1000}, "Mass of one load."},
       {"points_m", Numbers{&p.points, kMetre, {-500, 500}, {1, 500}},
-       "Places along the crest where loads are pushed, visited in turn; 0 is the middle."},
+       "Places along the crest where loads are laid, visited in turn; 0 is the middle."},
+      {"rows_m", Numbers{&p.rows, kMetre, {0, 500}, {1, 500}},
+       "How far behind distance_m loads lie: after all of points_m the next row, in turn."},
   };
 }
 
@@ -251,7 +269,7 @@ Fields keys(OutputSpec& o) {
        "Number of sections the pile is cut into for its gradings."},
       {"further_sections", Integers{&o.further_sections, {1, 100}, {0, 20}},
        "Other numbers of sections to analyse beside."},
-      {"after_dumps", Integers{&o.after_dumps, {1, 500}, {0, 100}},
+      {"after_dumps", Integers{&o.after_dumps, {1, 1000}, {0, 100}},
        "Dumps after which the pile is analysed too, beside the end."},
       {"trajectory", Boolean{&o.trajectory}, "Whether the trajectory is written."},
   };
@@ -262,8 +280,7 @@ OneOf experiment(Scenario& s) {
       {std::begin(kExperiments), std::end(kExperiments)},
       "end_dump: truck loads over the crest of a bench; repose_lift: a container filled with rock is lifted; "
       "drop_test: one rock falls on a floor, and its rebound is measured; push_dump: a blade pushes loads "
-      "over the "
-      "crest of a bench; bucket_dump: buckets are emptied along a wall.",
+      "over the crest of a bench; bucket_dump: buckets are emptied along a wall.",
       [&s] { return static_cast<int>(s.experiment.index()); },
       [&s](int index) {
         if (index == 0) s.experiment.emplace<EndDump>();

@@ -86,8 +86,9 @@ void Stage::begin(const std::vector<NewSphere>& fixed, const std::vector<std::ve
   if (hooks_.begin) hooks_.begin(outcome_.original, outcome_.fixed);
 }
 
-void Stage::add_load() {
-  const auto& load = loads_.at(next_load_++);
+void Stage::add_load(double lift) {
+  auto& load = loads_.at(next_load_++);
+  for (NewSphere& s : load) s.position.z() += lift;
   load_mass_ = 0;
   for (const NewSphere& s : load)
     load_mass_ += scenario_.material.density * std::numbers::pi / 6.0 * std::pow(s.diameter, 3);

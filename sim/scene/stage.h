@@ -25,8 +25,10 @@ class Stage {
   /// Tells the hooks what will come. `loads` holds every grain in order of dumping; ids follow the fixed
   /// balls.
   void begin(const std::vector<NewSphere>& fixed, const std::vector<std::vector<NewSphere>>& loads);
-  /// Adds the next load.
-  void add_load();
+  /// Adds the next load, `lift` (m) above its place.
+  void add_load(double lift = 0);
+  /// Something a reader of the result should know.
+  void note(std::string text) { outcome_.notes.push_back(std::move(text)); }
 
   /// Advances by `seconds`; false when the user ended the run. `share_now`, `share_then`: of the whole run,
   /// for progress.

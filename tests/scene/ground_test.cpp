@@ -53,6 +53,26 @@ TEST(Bench, BaseLayerLiesOnTheSurfaceWithoutHoles) {
     }
 }
 
+TEST(Bench, PlaneTopHasNoBallAboveIt) {
+  BenchSpec bench;
+  for (const double slope : {37.0, 45.0})
+    for (const BaseLayer layer : {BaseLayer::homogeneous, BaseLayer::mixed}) {
+      bench.slope_deg = slope, bench.base_layer = layer, bench.layer_on_top = false;
+      const auto plane = make_base_layer(bench, 1);
+      EXPECT_EQ(standing_height(bench), bench.height);
+      double highest = 0;
+      for (const NewSphere& ball : plane) {
+        EXPECT_GT(ball.position.x(), 0);
+        highest = std::max(highest, ball.position.z() + 0.5 * ball.diameter);
+      }
+      EXPECT_LE(highest, bench.height);
+      EXPECT_GT(highest, bench.height - 0.4) << "the slope is rough up to the crest";
+      bench.layer_on_top = true;
+      EXPECT_EQ(standing_height(bench), bench.height + 0.5);
+      EXPECT_GT(make_base_layer(bench, 1).size(), plane.size());
+    }
+}
+
 TEST(Bench, MixedLayerHasBothSizesAndDependsOnTheSeed) {
   BenchSpec bench;
   bench.width = 20, bench.base_layer = BaseLayer::mixed;
