@@ -36,6 +36,8 @@ FlowRecorder::FlowRecorder(const FlowSettings& settings) : settings_(settings) {
   refuse(settings.most_rows < 2 || settings.most_rows % 2 != 0, "the rows kept must be even, at least 2");
   highest_mean_.assign(static_cast<std::size_t>(settings.sections), kNaN);
   highest_fast_ = highest_mean_;
+  moved_mass_.assign(highest_mean_.size(), 0);
+  moved_moment_ = moved_mass_;
 }
 
 FlowRow FlowRecorder::look(const Snapshot& snapshot) {
@@ -64,6 +66,7 @@ FlowRow FlowRecorder::look(const Snapshot& snapshot) {
     double mass = 0, moment = 0;
     for (const WeighedValue& each : speeds[k]) mass += each.mass, moment += each.mass * each.value;
     row.mean[k] = moment / mass;
+    moved_mass_[k] += mass, moved_moment_[k] += moment;
     row.fast[k] = mass_quantile(std::move(speeds[k]), kFast);
   }
   return row;
@@ -109,6 +112,13 @@ void FlowRecorder::add(const Snapshot& snapshot) {
   note_arrivals(snapshot);
   keep(std::move(row));
   ++snapshots_;
+}
+
+std::vector<double> FlowRecorder::mean_speed() const {
+  std::vector<double> speeds;
+  for (std::size_t k = 0; k < moved_mass_.size(); ++k)
+    speeds.push_back(moved_mass_[k] > 0 ? moved_moment_[k] / moved_mass_[k] : kNaN);
+  return speeds;
 }
 
 FlowArrival FlowRecorder::arrival() const {

@@ -67,6 +67,9 @@ class FlowRecorder {
   const FlowSettings& settings() const { return settings_; }
   std::size_t snapshots() const { return snapshots_; }
   const std::vector<FlowRow>& rows() const { return rows_; }
+  /// Mean speed (m/s) of moving grains over all snapshots, by mass, in each section; NaN where nothing
+  /// flowed.
+  std::vector<double> mean_speed() const;
   /// Highest mean and 95th percentile of speed so far (m/s) in each section; NaN where nothing flowed.
   const std::vector<double>& highest_mean() const { return highest_mean_; }
   const std::vector<double>& highest_fast() const { return highest_fast_; }
@@ -86,6 +89,7 @@ class FlowRecorder {
   double last_time_ = 0;
   std::vector<FlowRow> rows_;
   std::vector<double> highest_mean_, highest_fast_;
+  std::vector<double> moved_mass_, moved_moment_;  // sums over snapshots of kg, kg m/s
   double largest_depth_ = 0, largest_energy_ = 0;
   std::optional<Snapshot> liveliest_;
   std::unordered_map<std::int64_t, bool> arrived_;  // grains seen, false while they were only higher up

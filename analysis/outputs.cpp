@@ -133,8 +133,9 @@ Outputs outputs_of(const SeedResult& seed) {
   }
   if (seed.largest_at_toe) add("largest_at_toe", *seed.largest_at_toe);
   if (seed.flow) {
-    for (std::size_t k = 0; k < seed.flow->highest_mean().size(); ++k) {
-      add(fmt::format("flow_speed_S{}", k + 1), seed.flow->highest_mean()[k]);
+    const std::vector<double> speeds = seed.flow->mean_speed();
+    for (std::size_t k = 0; k < speeds.size(); ++k) {
+      add(fmt::format("flow_speed_S{}", k + 1), speeds[k]);
       add(fmt::format("flow_fast_S{}", k + 1), seed.flow->highest_fast()[k]);
     }
     add("flow_depth_m", seed.flow->largest_depth());

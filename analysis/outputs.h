@@ -15,7 +15,7 @@ namespace scree {
 /// share_above_1m_orig, chi_zero_x_over_l (where chi changes sign along the slope) and chi_S1, mass_t_S1,
 /// d50_m_S1 ... for each section, and of a dump over a bench lateral_chi_std_S1, lateral_chi_range_S1,
 /// lateral_d50_rel_std_S1 (over strips across the slope, lateral.h), point1_toe_width_m, flow_speed_S1 and
-/// flow_fast_S1 (highest mean and 95th percentile of speed, m/s), flow_depth_m, arrival_energy_j_per_kg,
+/// flow_fast_S1 (mean and highest 95th percentile of speed, m/s), flow_depth_m, arrival_energy_j_per_kg,
 /// arrival_share_of_drop (flow.h), inside_porosity, inside_mean_abs_chi, inside_ksat_contrast (inside.h),
 /// layer_coarsening_down, layer_variance_between, layer_variance_by_chance (layers.h), largest_at_toe. Tables
 /// beside the scenario's own number of sections have names like chi_S1of3, piles before the last dump names

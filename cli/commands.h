@@ -47,6 +47,19 @@ struct PredictOptions {
   std::string output;               ///< empty: the repose angle
 };
 
+struct ReproduceOptions {
+  std::vector<std::string> cases;  ///< names of files in scenarios/thesis; empty: all
+  int seeds = 0;                   ///< of each, at most; 0: all that the case has
+  std::filesystem::path store;     ///< empty: runs/store.sqlite
+  std::filesystem::path out;       ///< empty: runs/reproduction
+  int jobs = 0;                    ///< runs side by side; 0: as many as cores
+  bool again = false;              ///< try runs that failed before again
+  bool list = false;               ///< report what is there, run nothing
+  bool force = false;              ///< write into a folder that is not empty
+  std::filesystem::path from;      ///< take the runs from this exported table; run nothing
+  std::filesystem::path csv;       ///< export to this file
+};
+
 int run_run(const RunOptions& options);
 int run_compare(const std::filesystem::path& dir, const std::vector<std::string>& cases);
 int run_validate(const std::filesystem::path& file, const std::vector<std::string>& overrides);
@@ -54,6 +67,7 @@ int run_schema();
 int run_calibrate(const CalibrateOptions& options);
 int run_predict(const PredictOptions& options);
 int run_sweep(const SweepOptions& options);
+int run_reproduce(const ReproduceOptions& options);
 
 /// The project's assets folder.
 std::filesystem::path asset_dir();

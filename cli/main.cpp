@@ -121,6 +121,28 @@ int main(int argc, char** argv) {
   predict_app->footer(
       "\nExample:\n  scree predict scenarios/sweeps/repose_lab.yaml material.mu=0.25 material.mu_r=0.3\n");
 
+  ReproduceOptions reproduce;
+  CLI::App* reproduce_app = app.add_subcommand(
+      "reproduce", "Simulate the cases of the thesis and hold every printed value against them");
+  reproduce_app->add_option("cases", reproduce.cases,
+                            "Cases: names of files in scenarios/thesis; default: all");
+  reproduce_app->add_option("--seeds", reproduce.seeds, "Seeds of each case, at most")
+      ->check(CLI::Range(1, 1000));
+  reproduce_app->add_option("--store", reproduce.store, "Results store; default: runs/store.sqlite");
+  reproduce_app->add_option("--out", reproduce.out, "Folder for the report; default: runs/reproduction");
+  reproduce_app->add_option("--jobs", reproduce.jobs, "Runs side by side; default: as many as cores")
+      ->check(CLI::Range(1, 1024));
+  reproduce_app->add_flag("--again", reproduce.again, "Try runs that failed before again");
+  reproduce_app->add_flag("--list", reproduce.list, "Report what the store has; run nothing");
+  reproduce_app->add_flag("--force", reproduce.force, "Write into --out even if it holds something");
+  reproduce_app->add_option("--from", reproduce.from,
+                            "Take the runs from this exported table, not from a store; run nothing");
+  reproduce_app->add_option("--export", reproduce.csv, "Write every run to this CSV file");
+  reproduce_app->footer(
+      "\nExamples:\n  scree reproduce a1 d2 --seeds 2\n"
+      "  scree reproduce --from assets/sweeps/thesis_cases.csv\n"
+      "\nAn interrupted reproduction goes on where it stopped when it is started again.\n");
+
   std::filesystem::path compare_dir;
   std::vector<std::string> compare_cases;
   CLI::App* compare_app = app.add_subcommand("compare", "Show a finished run beside the reference values");
@@ -143,10 +165,11 @@ int main(int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error);
     const bool names_one = argc > 1 && argv[1][0] != '-';
     if (names_one && app.get_subcommands().empty()) {
-      fmt::print(stderr,
-                 "scree: {}: no such subcommand; there are run, sweep, calibrate, predict, compare, validate "
-                 "and schema\n",
-                 argv[1]);
+      fmt::print(
+          stderr,
+          "scree: {}: no such subcommand; there are run, sweep, reproduce, calibrate, predict, compare, "
+          "validate and schema\n",
+          argv[1]);
       return kBadInput;
     }
     fmt::print(stderr, "scree: {} (see scree --help)\n", error.what());
@@ -160,6 +183,7 @@ int main(int argc, char** argv) {
   try {
     if (*run_app) return run_run(run);
     if (*sweep_app) return run_sweep(sweep);
+    if (*reproduce_app) return run_reproduce(reproduce);
     if (*calibrate_app) return run_calibrate(calibrate);
     if (*predict_app) return run_predict(predict);
     if (*compare_app) return run_compare(compare_dir, compare_cases);

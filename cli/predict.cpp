@@ -55,7 +55,7 @@ int run_predict(const PredictOptions& options) {
                                   sweep.parameters[k], point.values[k]));
       numbers.push_back(*number);
     }
-    for (const std::uint64_t seed : sweep.seeds) {
+    for (const std::uint64_t seed : point.scenario.seeds) {
       const auto found =
           store->find(scree::run_request(point.scenario, seed, scree::results_version(), asset_dir()).key);
       if (!found || !found->at_rest() || !found->outputs.contains(output)) continue;

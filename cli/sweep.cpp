@@ -8,7 +8,6 @@
 #include "analysis/outputs.h"
 #include "analysis/sweep_chart.h"
 #include "cli/commands.h"
-#include "cli/ensemble/run_request.h"
 #include "cli/ensemble/sweep_results.h"
 #include "cli/ensemble_console.h"
 #include "scree_version.h"
@@ -136,27 +135,6 @@ bool plot(const scree::Sweep& sweep, const std::vector<PointResults>& points, co
   return true;
 }
 
-// The runs of every point as requests to the store.
-std::vector<scree::RunRequest> requests_of(const scree::Sweep& sweep) {
-  std::vector<scree::RunRequest> requests;
-  for (const scree::SweepPoint& point : sweep.points)
-    for (const std::uint64_t seed : sweep.seeds)
-      requests.push_back(scree::run_request(point.scenario, seed, scree::results_version(), asset_dir()));
-  return requests;
-}
-
-std::vector<PointResults> look_up(const scree::Sweep& sweep, const std::vector<scree::RunRequest>& requests,
-                                  const scree::ResultsStore& store) {
-  std::vector<PointResults> points;
-  auto request = requests.begin();
-  for (const scree::SweepPoint& point : sweep.points) {
-    points.push_back({&point, sweep.seeds, {}});
-    for (std::size_t k = 0; k < sweep.seeds.size(); ++k)
-      points.back().runs.push_back(store.find((request++)->key));
-  }
-  return points;
-}
-
 // Tables and pictures of what is known.
 int show(const SweepOptions& options, const scree::Sweep& sweep, const std::vector<PointResults>& points) {
   if (options.failed) {
@@ -207,14 +185,14 @@ int run_sweep(const SweepOptions& options) {
     return show(options, sweep, points);
   }
 
-  const std::vector<scree::RunRequest> requests = requests_of(sweep);
+  const std::vector<scree::RunRequest> requests = scree::requests_of(sweep, asset_dir());
   const bool only_look = options.list || options.failed;
   const std::unique_ptr<scree::ResultsStore> store = open_store(options.store, only_look);
   if (!store) return kBadInput;
   scree::EnsembleProgress progress;
   if (!only_look) progress = run_with_progress(requests, *store, options.jobs, options.again);
 
-  const int shown = show(options, sweep, look_up(sweep, requests, *store));
+  const int shown = show(options, sweep, scree::look_up(sweep, requests, *store));
   if (!only_look) fmt::print("store: {} ({} runs done here)\n", store->file().string(), progress.ended_here);
   if (interrupted) {
     fmt::print(stderr, "interrupted; the same command goes on from here\n");

@@ -4,9 +4,10 @@
     extract.py TABLES [OUTPUT]
 
 TABLES is the folder of CSV tables extracted from the thesis; OUTPUT defaults to the folder of this script.
-Writes results.csv (SI units; columns in README.md) and copies the tables that the tests read as they are.
+Writes results.csv and trends.csv (SI units; columns in README.md) and copies the tables that the tests read as they are.
 """
 import csv
+import itertools
 import pathlib
 import re
 import shutil
@@ -29,9 +30,10 @@ QUANTITIES = {'chi': ['chi'], 'd10': ['d10'], 'd50': ['d50'], 'd80': ['d80'], 'd
               'd50_rel': ['d50_rel'], 'd10_d50_d90_rel': ['d10_rel', 'd50_rel', 'd90_rel'],
               'mass_in_section': ['mass_t'], 'share_d_gt_1m': ['share_above_1m'],
               'share_d_gt_1m_orig': ['share_above_1m_orig'], 'xl_chi_zero': ['xl_chi_zero'],
-              'bottom_width_from_point_1': ['toe_width'], 'chi_range': ['lateral_chi_range']}
+              'bottom_width_from_point_1': ['toe_width'], 'chi_range': ['lateral_chi_range'],
+              'particle_velocity_initial': ['flow_speed'], 'particle_velocity_mid_slope': ['flow_speed']}
 UNITS = {'mm': ('m', 1e-3), 'cm': ('m', 1e-2), 'm': ('m', 1), 't': ('t', 1), 'pct': ('-', 1e-2), '-': ('-', 1),
-         'deg': ('deg', 1)}
+         'deg': ('deg', 1), 'm/s': ('m/s', 1)}
 LOW, HIGH = ('gt', 'min'), ('lt', 'le', 'max')
 SECTION = re.compile(r'S\d|top|middle|bottom|whole')
 COLUMNS = ['case', 'quantity', 'section', 'kind', 'value', 'std', 'unit', 'relation', 'source', 'dumps']
@@ -65,6 +67,32 @@ class Results:
                                             source, self.dumps.get(SIMULATED_AS.get(case, case), '') if kind == 'pfc3d' else '')))
 
 
+TREND = re.compile(r'(?P<case>\w+)_vs_(?P<against>\w+)')
+TREND_QUANTITIES = {'chi_diff': ('chi', False), 'chi_diff_abs': ('chi', False), 'chi_diff_rel': ('chi', True),
+                    'd50_rel_diff_abs': ('d50_rel', False), 'd50_rel_diff_rel': ('d50_rel', True)}
+TREND_COLUMNS = ['case', 'against', 'quantity', 'section', 'difference', 'relative', 'relation', 'source']
+
+
+def trends(tables):
+    """Differences between two simulated cases; a range of sections stands for each of them in a bound, and for its
+    first section (the largest difference) otherwise."""
+    found = {}
+    for r in rows(tables, 'segregation_profiles.csv'):
+        pair = TREND.fullmatch(r['case'])
+        if not pair or r['kind'] != 'pfc3d' or r['quantity'] not in TREND_QUANTITIES:
+            continue
+        quantity, relative = TREND_QUANTITIES[r['quantity']]
+        bound = r['relation'] == 'lt'
+        ends = [int(s[1:]) for s in r['section_or_xl'].split('-')]
+        for case in CASES[pair['case']]:
+            for k in range(ends[0], (ends[-1] if bound else ends[0]) + 1):
+                row = (case, pair['against'], quantity, 'S%d' % k,
+                       '%.6g' % (float(r['value']) * UNITS[r['unit']][1]), 'yes' if relative else 'no',
+                       'lt' if bound else 'eq', 'line ' + r['source_line'])
+                found[row[:4] + row[5:7]] = dict(zip(TREND_COLUMNS, row))
+    return list(found.values())
+
+
 def rows(folder, name):
     with open(folder / name, newline='') as stream:
         return list(csv.DictReader(stream))
@@ -77,15 +105,18 @@ def optional(text):
 def profiles(tables, out):
     lines = sorted(rows(tables, 'segregation_profiles.csv'), key=lambda r: r['relation'] in LOW + HIGH)
     for r in lines:
-        if r['case'] not in CASES or r['quantity'] not in QUANTITIES or not SECTION.fullmatch(r['section_or_xl']):
+        if r['case'] not in CASES or r['quantity'] not in QUANTITIES:
+            continue
+        sections = ['S3', 'S4'] if r['section_or_xl'] == 'S3-S4' else [r['section_or_xl']]
+        if not SECTION.fullmatch(sections[0]):
             continue
         if r['case'] == 'cm_field_6sec' and (r['quantity'] == 'chi' or r['quantity'].endswith('_rel')):
             continue  # complete in tables C.7 to C.14, below
         if (r['source_line'], r['case'], r['quantity'], r['section_or_xl']) in CONTRADICTED:
             continue
         for case in CASES[r['case']]:
-            for quantity in QUANTITIES[r['quantity']]:
-                out.add(case, quantity, r['section_or_xl'], r['kind'], float(r['value']), optional(r['std']), r['unit'],
+            for quantity, section in itertools.product(QUANTITIES[r['quantity']], sections):
+                out.add(case, quantity, section, r['kind'], float(r['value']), optional(r['std']), r['unit'],
                         r['relation'], 'line ' + r['source_line'])
 
 
@@ -161,6 +192,10 @@ def main():
         writer = csv.DictWriter(stream, COLUMNS, lineterminator='\n')
         writer.writeheader()
         writer.writerows(sorted(out.rows.values(), key=lambda r: [r[c] for c in COLUMNS[:4]]))
+    with open(output / 'trends.csv', 'w', newline='') as stream:
+        writer = csv.DictWriter(stream, TREND_COLUMNS, lineterminator='\n')
+        writer.writeheader()
+        writer.writerows(trends(tables))
     for name in COPIES:
         shutil.copyfile(tables / name, output / name)
 

@@ -162,10 +162,26 @@ SweepResult load_sweep(const fs::path& file, const fs::path& asset_dir) {
   }
   if (const YamlEntry* compare = root->find("compare")) name_cases(*compare, asset_dir, sweep, reader);
   if (!reader.good()) return result;
-  if (root->find("seeds") == nullptr)
-    sweep.seeds = sweep.points.front().scenario.seeds;
-  else if (const YamlNode* list = reader.list_at(*root, "seeds", true, "a list of integers"))
-    sweep.seeds = reader.seeds(*list);
+  if (root->find("seeds") != nullptr)
+    if (const YamlNode* list = reader.list_at(*root, "seeds", true, "a list of integers")) {
+      const std::vector<std::uint64_t> seeds = reader.seeds(*list);
+      for (SweepPoint& point : sweep.points) point.scenario.seeds = seeds;
+    }
+  return result;
+}
+
+SweepResult load_cases(const std::vector<fs::path>& files, int seeds, const fs::path& asset_dir) {
+  SweepResult result;
+  result.sweep.name = "cases";
+  result.sweep.parameters = {"case"};
+  for (const fs::path& file : files) {
+    ScenarioResult loaded = load_scenario(file, {}, asset_dir);
+    result.errors.insert(result.errors.end(), loaded.errors.begin(), loaded.errors.end());
+    auto& all = loaded.scenario.seeds;
+    if (seeds > 0 && static_cast<std::size_t>(seeds) < all.size())
+      all.resize(static_cast<std::size_t>(seeds));
+    result.sweep.points.push_back({{file.stem().string()}, "", std::move(loaded.scenario)});
+  }
   return result;
 }
 

@@ -13,13 +13,12 @@ namespace scree {
 struct SweepPoint {
   std::vector<std::string> values;  ///< in the order of Sweep::parameters
   std::string compare;              ///< case in assets/reference/results.csv; may be empty
-  Scenario scenario;                ///< with these values, checked
+  Scenario scenario;                ///< with these values, checked; its seeds are those to run
 };
 
 struct Sweep {
   std::string name;                     ///< the file's stem
   std::vector<std::string> parameters;  ///< dotted keys of the scenario: material.mu
-  std::vector<std::uint64_t> seeds;
   std::vector<SweepPoint> points;
 };
 
@@ -42,5 +41,10 @@ struct SweepResult {
 ///     parameters: {material.mu: {from: 0.1, to: 0.8}} latin_hypercube, sobol, with points: N (and seed: N)
 /// Every point is loaded and checked as a scenario.
 SweepResult load_sweep(const std::filesystem::path& file, const std::filesystem::path& asset_dir);
+
+/// Scenario files as the points of a sweep with the one parameter `case`, the file's stem. `seeds`: how many
+/// of each, at most; 0: all that it has.
+SweepResult load_cases(const std::vector<std::filesystem::path>& files, int seeds,
+                       const std::filesystem::path& asset_dir);
 
 }  // namespace scree

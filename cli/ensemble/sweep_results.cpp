@@ -10,6 +10,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "cli/ensemble/run_request.h"
 #include "sim/io/text_file.h"
 
 namespace scree {
@@ -75,6 +76,26 @@ bool is_reading_of(const std::string& output, const ReferenceValue& printed, int
 
 }  // namespace
 
+std::vector<RunRequest> requests_of(const Sweep& sweep, const fs::path& asset_dir) {
+  std::vector<RunRequest> requests;
+  for (const SweepPoint& point : sweep.points)
+    for (const std::uint64_t seed : point.scenario.seeds)
+      requests.push_back(run_request(point.scenario, seed, results_version(), asset_dir));
+  return requests;
+}
+
+std::vector<PointResults> look_up(const Sweep& sweep, const std::vector<RunRequest>& requests,
+                                  const ResultsStore& store) {
+  std::vector<PointResults> points;
+  auto request = requests.begin();
+  for (const SweepPoint& point : sweep.points) {
+    points.push_back({&point, point.scenario.seeds, {}});
+    for (std::size_t k = 0; k < point.scenario.seeds.size(); ++k)
+      points.back().runs.push_back(store.find((request++)->key));
+  }
+  return points;
+}
+
 MeanStd PointResults::of(const std::string& output) const {
   std::vector<double> values;
   for (const auto& run : runs)
@@ -122,7 +143,8 @@ std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const fs::path& fil
   if (!in) throw std::runtime_error(fmt::format("{}: cannot be opened", file.string()));
   std::vector<PointResults> points;
   for (const SweepPoint& point : sweep.points)
-    points.push_back({&point, sweep.seeds, std::vector<std::optional<StoredResult>>(sweep.seeds.size())});
+    points.push_back({&point, point.scenario.seeds,
+                      std::vector<std::optional<StoredResult>>(point.scenario.seeds.size())});
 
   std::string line;
   int at_line = 0;

@@ -12,6 +12,9 @@
 
 namespace scree {
 
+/// The runs of every point, in order, as requests to a store. Throws as run_request.
+std::vector<RunRequest> requests_of(const Sweep& sweep, const std::filesystem::path& asset_dir);
+
 /// A point of the sweep and its runs, in the order of the seeds; none where a run has not been made.
 struct PointResults {
   const SweepPoint* point;
@@ -21,6 +24,10 @@ struct PointResults {
   MeanStd of(const std::string& output) const;
   int count(RunState state) const;
 };
+
+/// What a store has of the runs; `requests` as requests_of gives them.
+std::vector<PointResults> look_up(const Sweep& sweep, const std::vector<RunRequest>& requests,
+                                  const ResultsStore& store);
 
 /// Names of all numbers that the runs have.
 std::set<std::string> outputs_of(const std::vector<PointResults>& points);

@@ -48,7 +48,7 @@ TEST_F(SweepFile, GridIsEveryCombinationTheLastFastest) {
   ASSERT_TRUE(r.errors.empty()) << r.errors.front().text();
   EXPECT_EQ(r.sweep.name, "friction");
   EXPECT_THAT(r.sweep.parameters, ElementsAre("material.mu", "material.mu_r"));
-  EXPECT_THAT(r.sweep.seeds, ElementsAre(4u, 5u));
+  EXPECT_THAT(r.sweep.points[0].scenario.seeds, ElementsAre(4u, 5u));
   ASSERT_EQ(r.sweep.points.size(), 6u);
   EXPECT_THAT(r.sweep.points[0].values, ElementsAre("0.1", "0.3"));
   EXPECT_THAT(r.sweep.points[1].values, ElementsAre("0.1", "0.4"));
@@ -75,7 +75,7 @@ TEST_F(SweepFile, TiedKeyFollows) {
   ASSERT_TRUE(r.errors.empty()) << r.errors.front().text();
   EXPECT_EQ(r.sweep.points[0].scenario.material.mu_r, 0.25);
   EXPECT_EQ(r.sweep.points[1].scenario.material.mu_r, 0.5);
-  EXPECT_EQ(r.sweep.seeds.size(), 10u) << "those of the scenario";
+  EXPECT_EQ(r.sweep.points[0].scenario.seeds.size(), 10u) << "those of the scenario";
 }
 
 TEST_F(SweepFile, RandomDesignsStayInTheirRanges) {

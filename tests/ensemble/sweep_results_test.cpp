@@ -20,8 +20,8 @@ class SweepTable : public testing::Test {
   void SetUp() override {
     file = fs::temp_directory_path() / ("scree_table_" + std::to_string(getpid()) + ".csv");
     sweep.parameters = {"material.mu", "material.mu_r"};
-    sweep.seeds = {7, 8};
     sweep.points.resize(2);
+    for (SweepPoint& point : sweep.points) point.scenario.seeds = {7, 8};
     sweep.points[0].values = {"0.2", "0.1"};
     sweep.points[1].values = {"0.20", "0.4"};
     sweep.points[0].compare = "first";
@@ -41,8 +41,8 @@ class SweepTable : public testing::Test {
     StoredResult failed;
     failed.state = RunState::failed;
     failed.message = "a \"strange\" thing, indeed";
-    return {{&sweep.points[0], sweep.seeds, {run(20), run(22)}},
-            {&sweep.points[1], sweep.seeds, {failed, std::nullopt}}};
+    return {{&sweep.points[0], {7, 8}, {run(20), run(22)}},
+            {&sweep.points[1], {7, 8}, {failed, std::nullopt}}};
   }
   ReferenceValue printed(const char* name, const char* kind, double value) {
     ReferenceValue v;

@@ -1,0 +1,105 @@
+// scree reproduce: the cases of the thesis, and every value printed for them beside ours.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/reproduction.h"
+#include "cli/commands.h"
+#include "cli/ensemble/sweep_results.h"
+#include "cli/ensemble_console.h"
+#include "cli/output_folder.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path case_dir() {
+  return asset_dir().parent_path() / "scenarios" / "thesis";
+}
+
+// Files of the cases asked for; none, with a message, if one is not there.
+std::vector<fs::path> case_files(const std::vector<std::string>& asked) {
+  std::vector<std::string> known;
+  for (const auto& item : fs::directory_iterator(case_dir()))
+    if (item.path().extension() == ".yaml") known.push_back(item.path().stem());
+  std::sort(known.begin(), known.end());
+  std::vector<fs::path> files;
+  for (const std::string& name : asked.empty() ? known : asked) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      fmt::print(stderr, "{}: no such case; there are {}\n", name, fmt::join(known, ", "));
+      return {};
+    }
+    files.push_back(case_dir() / (name + ".yaml"));
+  }
+  return files;
+}
+
+std::vector<scree::CaseResult> results_of(const std::vector<scree::PointResults>& points,
+                                          const std::vector<scree::ReferenceValue>& reference) {
+  std::vector<scree::CaseResult> cases;
+  for (const scree::PointResults& point : points) {
+    const scree::Scenario& scenario = point.point->scenario;
+    scree::CaseResult result;
+    result.name = point.point->values.front();
+    result.title = scenario.title;
+    for (const auto& run : point.runs) {
+      if (!run || run->state == scree::RunState::running) {
+        ++result.missing;
+      } else if (run->state == scree::RunState::failed) {
+        ++result.failed;
+      } else {
+        result.seeds.push_back(run->outputs);
+        result.wall_seconds += run->wall_seconds;
+      }
+    }
+    result.comparison = scree::compare_with_reference(result.seeds, reference, scenario.compare);
+    cases.push_back(std::move(result));
+  }
+  return cases;
+}
+
+}  // namespace
+
+int run_reproduce(const ReproduceOptions& options) {
+  const std::vector<fs::path> files = case_files(options.cases);
+  if (files.empty()) return kBadInput;
+  const scree::SweepResult loaded = scree::load_cases(files, options.seeds, asset_dir());
+  for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
+  if (!loaded.errors.empty()) return kBadInput;
+  const scree::Sweep& sweep = loaded.sweep;
+  const fs::path out = options.out.empty() ? free_run_folder("reproduction") : options.out;
+  if (!prepare_folder(out, options.force)) return kBadInput;
+
+  std::vector<scree::PointResults> points;
+  scree::EnsembleProgress progress;
+  if (!options.from.empty()) {
+    try {
+      points = scree::read_sweep_csv(sweep, options.from);
+    } catch (const std::runtime_error& error) {
+      fmt::print(stderr, "{}\n", error.what());
+      return kBadInput;
+    }
+  } else {
+    const std::vector<scree::RunRequest> requests = scree::requests_of(sweep, asset_dir());
+    const auto store = open_store(options.store, options.list);
+    if (!store) return kBadInput;
+    if (!options.list) progress = run_with_progress(requests, *store, options.jobs, options.again);
+    points = scree::look_up(sweep, requests, *store);
+  }
+
+  const fs::path reference = asset_dir() / "reference";
+  const auto cases = results_of(points, scree::read_reference(reference / "results.csv"));
+  const auto trends = scree::compare_trends(cases, scree::read_trends(reference / "trends.csv"));
+  scree::write_reproduction(cases, trends, out);
+  if (!options.csv.empty()) {
+    scree::write_sweep_csv(sweep, points, options.csv);
+    fmt::print("table: {}\n", options.csv.string());
+  }
+  for (const std::string& line : scree::reproduction_in_words(cases, trends)) fmt::print("{}\n", line);
+  fmt::print("report: {}\n", (out / "report.html").string());
+  if (interrupted) {
+    fmt::print(stderr, "interrupted; the same command goes on from here\n");
+    return kInterrupted;
+  }
+  return progress.failed > 0 ? kFailed : kOk;
+}
