@@ -47,11 +47,12 @@ std::vector<Comparison> compare_with_reference(const std::vector<Outputs>& seeds
       if (simulated.n == 0) continue;
       Comparison comparison{row, simulated.mean, std::nullopt, std::nullopt};
       if (simulated.n > 1) comparison.simulated_std = simulated.std;
-      const double deviation = std::hypot(row.std.value_or(0), comparison.simulated_std.value_or(0));
+      const double printed_std = row.std.value_or(row.rounding / std::sqrt(3.0));
+      const double deviation = std::hypot(printed_std, comparison.simulated_std.value_or(0));
       double difference = simulated.mean - row.value;
       if (meaning == Meaning::at_least) difference = std::min(difference, 0.0);
       if (meaning == Meaning::at_most) difference = std::max(difference, 0.0);
-      if (deviation > 0) comparison.z = difference / deviation;
+      if (deviation > 0 && (row.std || comparison.simulated_std)) comparison.z = difference / deviation;
       comparisons.push_back(std::move(comparison));
     }
   }

@@ -7,6 +7,17 @@
 
 namespace scree {
 
+namespace {
+
+// 0.05 of 0.6, 0.5 of 375.
+double half_of_last_digit(const std::string& number) {
+  const auto point = number.find('.');
+  return 0.5 *
+         std::pow(10.0, point == std::string::npos ? 0.0 : -static_cast<double>(number.size() - point - 1));
+}
+
+}  // namespace
+
 std::vector<ReferenceValue> read_reference(const std::filesystem::path& file) {
   CsvTable table(
       file, {"case", "quantity", "section", "kind", "value", "std", "unit", "relation", "source", "dumps"});
@@ -18,9 +29,10 @@ std::vector<ReferenceValue> read_reference(const std::filesystem::path& file) {
     row.section = table.text("section");
     row.kind = table.one_of("kind", {"pfc3d", "measured"});
     row.value = table.number("value");
+    row.rounding = half_of_last_digit(table.text("value"));
     row.std = table.optional_number("std");
     if (row.std && *row.std < 0) table.fail(fmt::format("std {} is below 0", *row.std));
-    row.unit = table.one_of("unit", {"m", "t", "deg", "m/s", "-"});
+    row.unit = table.one_of("unit", {"m", "t", "deg", "-"});
     row.relation = table.one_of(
         "relation", {"eq", "approx", "lt", "le", "gt", "min", "max", "mean", "median", "derived"});
     row.source = table.text("source");

@@ -1,8 +1,266 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "analysis/outputs.h"
+#include "analysis/profile_chart.h"
+#include "analysis/report_page.h"
+#include "analysis/report_text.h"
 #include "analysis/reproduction.h"
+#include "sim/io/text_file.h"
 
 namespace scree {
+namespace {
 
-void write_reproduction(const std::vector<CaseResult>&, const std::vector<TrendComparison>&,
-                        const std::filesystem::path&) {}
+// A figure of the thesis: a quantity along the slope, of several cases.
+struct FigureSpec {
+  const char *figure, *file, *title;
+  const char *quantity, *label;
+  int sections;
+  int dumps;  // after which the pile is looked at; 0: at the end
+  std::vector<const char*> cases;
+};
+
+const std::vector<FigureSpec>& figure_specs() {
+  static const char* const kChi = "segregation degree χ";
+  static const char* const kD50 = "D50 over that as dumped";
+  static const std::vector<FigureSpec> specs{
+      {"5.8", "lab_d10", "Laboratory, D10 of the surface cells", "d10", "D10 (m)", 3, 0, {"lab_segregation"}},
+      {"5.9", "lab_d50", "Laboratory, D50 of the surface cells", "d50", "D50 (m)", 3, 0, {"lab_segregation"}},
+      {"5.9", "lab_d80", "Laboratory, D80 of the surface cells", "d80", "D80 (m)", 3, 0, {"lab_segregation"}},
+      {"5.10", "lab_chi", "Laboratory, segregation degree", "chi", kChi, 3, 0, {"lab_segregation"}},
+      {"5.11", "cm_d50", "Canadian Malartic, D50, three sections", "d50", "D50 (m)", 3, 3, {"c1"}},
+      {"5.12", "cm_chi", "Canadian Malartic, three sections", "chi", kChi, 3, 3, {"c1"}},
+      {"5.12", "cm_chi6", "Canadian Malartic, six sections", "chi", kChi, 6, 0, {"c1"}},
+      {"5.13", "qb_d50", "Quebrada Blanca, D50, five sections", "d50", "D50 (m)", 5, 0, {"a3"}},
+      {"5.14", "qb_d80", "Quebrada Blanca, D80, five sections", "d80", "D80 (m)", 5, 0, {"a3"}},
+      {"6.5", "height_chi", "Height of the bench", "chi", kChi, 6, 0, {"a1", "a2", "a3", "a4"}},
+      {"6.5", "height_d50", "Height of the bench", "d50_rel", kD50, 6, 0, {"a1", "a2", "a3", "a4"}},
+      {"6.6", "grading_chi", "Grading of the rock", "chi", kChi, 6, 0, {"a1", "c1"}},
+      {"6.6", "grading_d50", "Grading of the rock", "d50_rel", kD50, 6, 0, {"a1", "c1"}},
+      {"6.7", "payload_chi", "Payload", "chi", kChi, 6, 0, {"a1", "b1"}},
+      {"6.7", "payload_d50", "Payload", "d50_rel", kD50, 6, 0, {"a1", "b1"}},
+      {"6.8", "method_chi", "End dumping and push dumping", "chi", kChi, 6, 0, {"a1", "d2"}},
+      {"6.8", "method_d50", "End dumping and push dumping", "d50_rel", kD50, 6, 0, {"a1", "d2"}},
+      {"6.9", "push_chi", "Velocity of the blade", "chi", kChi, 6, 0, {"d1", "d2", "d3", "d4", "d5", "d6"}},
+      {"6.9",
+       "push_d50",
+       "Velocity of the blade",
+       "d50_rel",
+       kD50,
+       6,
+       0,
+       {"d1", "d2", "d3", "d4", "d5", "d6"}},
+      {"6.10",
+       "push_speed",
+       "Mean speed of moving rock",
+       "flow_speed",
+       "speed (m/s)",
+       6,
+       0,
+       {"a1", "d1", "d6"}},
+      {"6.12",
+       "lateral_chi",
+       "Distance of the dump points",
+       "chi",
+       kChi,
+       6,
+       0,
+       {"a1", "lateral_s4", "lateral_s8", "lateral_s12"}},
+      {"6.13",
+       "lateral_std",
+       "Deviation of χ across the slope",
+       "lateral_chi_std",
+       "deviation of χ over strips",
+       6,
+       0,
+       {"a1", "lateral_s4", "lateral_s8", "lateral_s12"}},
+  };
+  return specs;
+}
+
+double x_over_l(int section, int sections) {
+  return (2.0 * section - 1) / (2.0 * sections);
+}
+
+// S4 -> 4, bottom -> 3; 0 for none.
+int section_number(const std::string& name) {
+  if (name == "top") return 1;
+  if (name == "middle") return 2;
+  if (name == "bottom") return 3;
+  return name.size() == 2 && name[0] == 'S' ? name[1] - '0' : 0;
+}
+
+ChartSeries ours(const CaseResult& result, const FigureSpec& spec, int colour) {
+  ChartSeries series{result.name, ChartSeries::Kind::ours, colour, {}};
+  static const char* const kCells[] = {"top", "middle", "bottom"};
+  for (int k = 1; k <= spec.sections; ++k) {
+    ReferenceValue what;
+    what.case_name = fmt::format("{}sec", spec.sections);
+    what.case_name.insert(0, 1, '_');
+    what.quantity = spec.quantity;
+    what.section = spec.sections == 3 ? kCells[k - 1] : fmt::format("S{}", k);
+    what.dumps = spec.dumps;
+    std::vector<double> values;
+    for (const Outputs& seed : result.seeds)
+      if (const auto value = output_for(what, seed)) values.push_back(*value);
+    const MeanStd both = mean_std(values);
+    if (both.n > 0) series.points.push_back({x_over_l(k, spec.sections), both.mean, both.std});
+  }
+  return series;
+}
+
+ChartSeries printed(const CaseResult& result, const FigureSpec& spec, ChartSeries::Kind kind, int colour) {
+  ChartSeries series{result.name, kind, colour, {}};
+  for (const Comparison& row : result.comparison) {
+    const ReferenceValue& r = row.reference;
+    if (r.quantity != spec.quantity || meaning_of(r) != Meaning::value || section_count(r) != spec.sections)
+      continue;
+    if ((r.kind == "measured") != (kind == ChartSeries::Kind::measured)) continue;
+    if (const int k = section_number(r.section); k > 0)
+      series.points.push_back({x_over_l(k, spec.sections), r.value, r.std.value_or(std::nan(""))});
+  }
+  std::sort(series.points.begin(), series.points.end(),
+            [](const auto& a, const auto& b) { return a.x < b.x; });
+  return series;
+}
+
+std::vector<Picture> draw_figures(const std::vector<CaseResult>& cases, const std::filesystem::path& folder) {
+  std::vector<Picture> pictures;
+  for (const FigureSpec& spec : figure_specs()) {
+    ProfileChart chart{spec.title,
+                       "place along the slope x/L (0 crest, 1 toe)",
+                       spec.label,
+                       std::string_view(spec.quantity) == "chi",
+                       {}};
+    int colour = 0;
+    for (const char* name : spec.cases) {
+      const auto found =
+          std::find_if(cases.begin(), cases.end(), [&](const CaseResult& each) { return each.name == name; });
+      if (found != cases.end()) {
+        ChartSeries here = ours(*found, spec, colour);
+        if (!here.points.empty()) {
+          chart.series.push_back(std::move(here));
+          for (const auto kind : {ChartSeries::Kind::pfc3d, ChartSeries::Kind::measured})
+            if (ChartSeries theirs = printed(*found, spec, kind, colour); !theirs.points.empty())
+              chart.series.push_back(std::move(theirs));
+        }
+      }
+      ++colour;
+    }
+    if (chart.series.empty()) continue;
+    const auto file = folder / fmt::format("{}.svg", spec.file);
+    draw(chart, file);
+    pictures.push_back(
+        {fmt::format("{} (figure {} of the thesis)", spec.title, spec.figure), file,
+         "Dots with a line: mean and standard deviation of the seeds simulated here. Squares: PFC3D; "
+         "triangles: measured; both where the thesis prints numbers."});
+  }
+  return pictures;
+}
+
+std::string signs_table(const std::vector<CaseResult>& cases) {
+  std::string rows;
+  for (const CaseResult& each : cases) {
+    std::vector<double> crest, toe;
+    for (const Outputs& seed : each.seeds) {
+      if (!seed.contains("chi_S1") || !seed.contains("chi_S6")) continue;
+      crest.push_back(seed.at("chi_S1"));
+      toe.push_back(seed.at("chi_S6"));
+    }
+    const MeanStd a = mean_std(crest), b = mean_std(toe);
+    if (a.n == 0) continue;
+    const auto right =
+        static_cast<int>(std::count_if(crest.begin(), crest.end(), [](double x) { return x < 0; })) +
+        static_cast<int>(std::count_if(toe.begin(), toe.end(), [](double x) { return x > 0; }));
+    rows += fmt::format(
+        "<tr><td class=\"word\">{}</td><td>{}</td><td>{}</td><td>{} of {}</td></tr>\n",
+        html_escaped(each.name), value_cell("chi", a.mean, a.n > 1 ? std::optional(a.std) : std::nullopt, ""),
+        value_cell("chi", b.mean, b.n > 1 ? std::optional(b.std) : std::nullopt, ""), right, 2 * a.n);
+  }
+  if (rows.empty()) return rows;
+  return "<h2>Fine at the crest, coarse at the toe</h2>\n<div class=\"wide\"><table><thead><tr><th "
+         "class=\"word\">Case</th><th>χ of S1</th><th>χ of S6</th><th>signs as expected, of all "
+         "seeds</th></tr></thead><tbody>\n" +
+         rows + "</tbody></table></div>\n";
+}
+
+const char* style_of(const TrendComparison& row) {
+  if (row.trend.bound)
+    return std::abs(row.difference) <= row.trend.difference ? "agrees" : row.p < 0.05 ? "differs" : "unknown";
+  const bool same = row.difference * row.trend.difference > 0;
+  return row.p < 0.05 ? same ? "close" : "differs" : "unknown";
+}
+
+const char* words_of(const TrendComparison& row) {
+  if (row.trend.bound)
+    return std::abs(row.difference) <= row.trend.difference ? "within the bound"
+           : row.p < 0.05                                   ? "beyond the bound"
+                                                            : "beyond the bound, within the scatter";
+  const bool same = row.difference * row.trend.difference > 0;
+  return row.p < 0.05 ? same ? "same direction" : "opposite direction"
+         : same       ? "same direction, within the scatter"
+                      : "opposite direction, within the scatter";
+}
+
+std::string trends_table(const std::vector<TrendComparison>& trends) {
+  if (trends.empty()) return "";
+  std::string out =
+      "<h2>Differences between cases</h2>\n<p>p is the probability that seeds alone differ so much (Welch's "
+      "t "
+      "test); below 0.05 a difference is beyond their scatter. Percentages are over the magnitude of the "
+      "second "
+      "case's value.</p>\n<div class=\"wide\"><table><thead><tr><th class=\"word\">Case</th><th "
+      "class=\"word\">against</th><th class=\"word\">Quantity</th><th "
+      "class=\"word\">Section</th><th>Printed</th>"
+      "<th>Here</th><th>p</th><th class=\"word\">Verdict</th><th "
+      "class=\"word\">Source</th></tr></thead><tbody>\n";
+  for (const TrendComparison& row : trends) {
+    const Trend& t = row.trend;
+    const auto text = [&](double value) {
+      return t.relative ? decimals_text(100 * value, 0) + " %" : decimals_text(value, 2);
+    };
+    out += fmt::format(
+        "<tr><td class=\"word\">{}</td><td class=\"word\">{}</td><td class=\"word\">{}</td><td "
+        "class=\"word\">{}</td><td>{}{}</td><td>{}<small>{} to {}</small></td><td>{}</td><td class=\"word "
+        "{}\">{}</td><td class=\"word\">{}</td></tr>\n",
+        html_escaped(t.case_name), html_escaped(t.against), html_escaped(quantity_in_words(t.quantity)),
+        html_escaped(t.section), t.bound ? "|·| ≤ " : "", text(t.difference), text(row.difference),
+        text(row.low), text(row.high), row.p < 0.001 ? "&lt; 0.001" : decimals_text(row.p, 3), style_of(row),
+        words_of(row), html_escaped(t.source));
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+}  // namespace
+
+void write_reproduction(const std::vector<CaseResult>& cases, const std::vector<TrendComparison>& trends,
+                        const std::filesystem::path& folder) {
+  const std::filesystem::path pictures = folder / "pictures";
+  std::filesystem::create_directories(pictures);
+  std::string body = "<h2>What agrees and what does not</h2>\n<ul>\n";
+  for (const std::string& line : reproduction_in_words(cases, trends))
+    body += fmt::format("<li>{}</li>\n", html_escaped(line));
+  body += "</ul>\n" + signs_table(cases) + trends_table(trends);
+  body += figures("Figures", draw_figures(cases, pictures));
+  body += "<h2>Every printed value</h2>\n";
+  double seconds = 0;
+  std::size_t runs = 0;
+  for (const CaseResult& each : cases) {
+    seconds += each.wall_seconds;
+    runs += each.seeds.size();
+    if (each.seeds.empty()) continue;
+    body += fmt::format("<h3>{}: {}, {} seed{}</h3>\n", html_escaped(each.name), html_escaped(each.title),
+                        each.seeds.size(), each.seeds.size() == 1 ? "" : "s");
+    body += each.comparison.empty() ? "<p>Nothing is printed for this case alone.</p>\n"
+                                    : comparison_table(each.comparison);
+  }
+  write_text_file(
+      folder / "report.html",
+      html_page("The thesis's cases, simulated again",
+                fmt::format("{} runs, {} of computing on one core", runs, duration_text(seconds)), body));
+}
 
 }  // namespace scree

@@ -59,6 +59,7 @@ struct ReferenceValue {
   std::string unit;
   std::string relation;  ///< eq, approx, lt, gt, ...
   std::string source;    ///< table or line of the source
+  double rounding = 0;   ///< half of the last digit printed
   int dumps = 0;         ///< number of dumps in the pile it was read from; 0: not stated
 };
 
@@ -78,8 +79,9 @@ struct Comparison {
   ReferenceValue reference;
   double simulated = 0;
   std::optional<double> simulated_std;  ///< between seeds; none with one seed
-  /// (simulated - reference) / sqrt(reference_std^2 + simulated_std^2), of the deviations that there are;
-  /// none without any. Of a bound: how far it is passed, 0 if it is kept.
+  /// (simulated - reference) / sqrt(reference_std^2 + simulated_std^2); none when neither is known. Where
+  /// none is printed, the deviation of rounding stands for it (half of the last digit over sqrt 3). Of a
+  /// bound: how far it is passed, 0 if it is kept.
   std::optional<double> z;
 };
 

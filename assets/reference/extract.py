@@ -7,7 +7,6 @@ TABLES is the folder of CSV tables extracted from the thesis; OUTPUT defaults to
 Writes results.csv and trends.csv (SI units; columns in README.md) and copies the tables that the tests read as they are.
 """
 import csv
-import itertools
 import pathlib
 import re
 import shutil
@@ -30,10 +29,9 @@ QUANTITIES = {'chi': ['chi'], 'd10': ['d10'], 'd50': ['d50'], 'd80': ['d80'], 'd
               'd50_rel': ['d50_rel'], 'd10_d50_d90_rel': ['d10_rel', 'd50_rel', 'd90_rel'],
               'mass_in_section': ['mass_t'], 'share_d_gt_1m': ['share_above_1m'],
               'share_d_gt_1m_orig': ['share_above_1m_orig'], 'xl_chi_zero': ['xl_chi_zero'],
-              'bottom_width_from_point_1': ['toe_width'], 'chi_range': ['lateral_chi_range'],
-              'particle_velocity_initial': ['flow_speed'], 'particle_velocity_mid_slope': ['flow_speed']}
+              'bottom_width_from_point_1': ['toe_width'], 'chi_range': ['lateral_chi_range']}
 UNITS = {'mm': ('m', 1e-3), 'cm': ('m', 1e-2), 'm': ('m', 1), 't': ('t', 1), 'pct': ('-', 1e-2), '-': ('-', 1),
-         'deg': ('deg', 1), 'm/s': ('m/s', 1)}
+         'deg': ('deg', 1)}
 LOW, HIGH = ('gt', 'min'), ('lt', 'le', 'max')
 SECTION = re.compile(r'S\d|top|middle|bottom|whole')
 COLUMNS = ['case', 'quantity', 'section', 'kind', 'value', 'std', 'unit', 'relation', 'source', 'dumps']
@@ -107,16 +105,15 @@ def profiles(tables, out):
     for r in lines:
         if r['case'] not in CASES or r['quantity'] not in QUANTITIES:
             continue
-        sections = ['S3', 'S4'] if r['section_or_xl'] == 'S3-S4' else [r['section_or_xl']]
-        if not SECTION.fullmatch(sections[0]):
+        if not SECTION.fullmatch(r['section_or_xl']):
             continue
         if r['case'] == 'cm_field_6sec' and (r['quantity'] == 'chi' or r['quantity'].endswith('_rel')):
             continue  # complete in tables C.7 to C.14, below
         if (r['source_line'], r['case'], r['quantity'], r['section_or_xl']) in CONTRADICTED:
             continue
         for case in CASES[r['case']]:
-            for quantity, section in itertools.product(QUANTITIES[r['quantity']], sections):
-                out.add(case, quantity, section, r['kind'], float(r['value']), optional(r['std']), r['unit'],
+            for quantity in QUANTITIES[r['quantity']]:
+                out.add(case, quantity, r['section_or_xl'], r['kind'], float(r['value']), optional(r['std']), r['unit'],
                         r['relation'], 'line ' + r['source_line'])
 
 

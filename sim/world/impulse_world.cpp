@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace scree {
 namespace {
@@ -17,6 +18,8 @@ constexpr double kMassUnit = 1e7;
 // own margin of 0.05 m is several diameters of the laboratory's smallest spheres: each would be paired with
 // hundreds.
 constexpr double kReach = 0.1;
+
+constexpr double kWindow = 0.1;  // s
 
 const btSphereShape* sphere_of(const btCollisionObject* object) {
   const btCollisionShape* shape = object->getCollisionShape();
@@ -113,8 +116,26 @@ void ImpulseWorld::advance_to(double end) {
     statistics_.time_step_min = statistics_.time_step_min > 0 ? std::min(statistics_.time_step_min, dt) : dt;
     statistics_.time_step_max = std::max(statistics_.time_step_max, dt);
     check_spheres(movable_);
+    if (time_ >= looked_ + kWindow) look_how_far();
     if (changed_) prepare();
   }
+}
+
+void ImpulseWorld::look_how_far() {
+  places_.resize(bodies_.size(), Vec3::Constant(std::numeric_limits<double>::infinity()));
+  travelled_speed_.resize(bodies_.size());
+  for (const int i : movable_) {
+    const auto id = static_cast<std::size_t>(spheres_.id[i]);
+    const Vec3 now = spheres_.place[i].vec();
+    travelled_speed_[id] = (now - places_[id]).norm() / (time_ - looked_);
+    places_[id] = now;
+  }
+  looked_ = time_;
+}
+
+double ImpulseWorld::speed_of(int sphere) const {
+  const auto id = static_cast<std::size_t>(spheres_.id[sphere]);
+  return id < travelled_speed_.size() ? travelled_speed_[id] : std::numeric_limits<double>::infinity();
 }
 
 void ImpulseWorld::integrateTransforms(btScalar dt) {

@@ -151,7 +151,7 @@ double RockWorld::moving_mass_share(double speed) const {
     if (fixed_[i] || spheres_.lost[i]) continue;
     const double mass = spheres_.velocity[i].w;
     all += mass;
-    if (spheres_.velocity[i].vec().squaredNorm() > speed * speed) moving += mass;
+    if (speed_of(i) > speed) moving += mass;
   }
   return all > 0 ? moving / all : 0.0;
 }

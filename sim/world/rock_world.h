@@ -99,6 +99,8 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   std::vector<Grain> fixed_balls() const;
   /// Share of the mass in the model that moves faster than `speed` (m/s).
   double moving_mass_share(double speed) const;
+  /// Speed (m/s) of a movable sphere (its index) as moving_mass_share() takes it.
+  virtual double speed_of(int sphere) const { return spheres_.velocity[sphere].vec().norm(); }
   virtual Energy energy() const;
   /// Brings Bullet's bodies and boxes to the present state.
   virtual void update_bullet() {}

@@ -1,0 +1,32 @@
+#pragma once
+// A chart of a number along a slope or over a parameter, of several runs and printed values together.
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace scree {
+
+/// Points of one run or of one printed case.
+struct ChartSeries {
+  enum class Kind { ours, pfc3d, measured };
+  struct Point {
+    double x = 0, y = 0;
+    double std = std::numeric_limits<double>::quiet_NaN();  ///< none: no bar
+  };
+  std::string name;
+  Kind kind = Kind::ours;  ///< ours: dots and a line; pfc3d: squares; measured: triangles
+  int colour = 0;          ///< index; series of one case share it
+  std::vector<Point> points;
+};
+
+struct ProfileChart {
+  std::string title, x_label, y_label;
+  bool zero_line = false;  ///< a line at y = 0
+  std::vector<ChartSeries> series;
+};
+
+/// Draws it as SVG. Throws std::runtime_error, see run_gnuplot.
+void draw(const ProfileChart& chart, const std::filesystem::path& file);
+
+}  // namespace scree

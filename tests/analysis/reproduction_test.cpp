@@ -1,0 +1,113 @@
+// The cases of the thesis beside ours.
+#include "analysis/reproduction.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "scree_version.h"
+
+namespace scree {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Contains;
+using testing::HasSubstr;
+
+CaseResult runs(const char* name, std::initializer_list<double> chi) {
+  CaseResult result;
+  result.name = name;
+  for (const double value : chi)
+    result.seeds.push_back({{"sections", 6}, {"dumps", 4}, {"chi_S1", value}, {"chi_S6", 0.3}});
+  return result;
+}
+
+TEST(Trends, WelchByHand) {
+  // Means 3 and 1, variances 1 and 4, three values each: t = 2 / sqrt(1/3 + 4/3) = 1.549, degrees of freedom
+  // (5/3)^2 / ((1/3)^2 / 2 + (4/3)^2 / 2) = 2.941; two-sided p = 0.221, t at 0.975 is 3.220.
+  const std::vector<CaseResult> cases{runs("b1", {2, 3, 4}), runs("a1", {-1, 1, 3})};
+  Trend trend{"B1", "A1", "chi", "S1", 0.28};
+  const auto compared = compare_trends(cases, {trend});
+  ASSERT_EQ(compared.size(), 1u);
+  EXPECT_DOUBLE_EQ(compared[0].difference, 2);
+  EXPECT_NEAR(compared[0].p, 0.221, 0.002);
+  EXPECT_NEAR(compared[0].high - compared[0].difference, 3.220 * std::sqrt(5.0 / 3), 0.01);
+  trend.relative = true;  // over |1|
+  EXPECT_DOUBLE_EQ(compare_trends(cases, {trend})[0].difference, 2);
+}
+
+TEST(Trends, NeedTwoSeedsOfBothCases) {
+  const Trend trend{"b1", "a1", "chi", "S1", 0.28};
+  EXPECT_TRUE(compare_trends({runs("b1", {2, 3})}, {trend}).empty());
+  EXPECT_TRUE(compare_trends({runs("b1", {2, 3}), runs("a1", {1})}, {trend}).empty());
+  EXPECT_EQ(compare_trends({runs("b1", {2, 3}), runs("a1", {1, 2})}, {trend}).size(), 1u);
+}
+
+TEST(Trends, FileOfTheProjectIsReadAndWrongOnesAreNamed) {
+  const fs::path source = SCREE_SOURCE_DIR;
+  const auto trends = read_trends(source / "assets/reference/trends.csv");
+  EXPECT_GE(trends.size(), 15u);
+  for (const Trend& trend : trends) EXPECT_NE(trend.case_name, trend.against);
+  const fs::path file = fs::path(testing::TempDir()) / "scree_trends.csv";
+  std::ofstream(file) << "case,against,quantity,section,difference,relative,relation,source\n"
+                         "B1,A1,chi,S1,0.28,perhaps,eq,line 1\n";
+  try {
+    read_trends(file);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("scree_trends.csv:2: relative 'perhaps' is none of no yes"));
+  }
+}
+
+TEST(Bounds, AreKeptOrPassed) {
+  ReferenceValue least{"a1", "chi", "S1", "pfc3d", -1.04, std::nullopt, "-", "min", "T"};
+  const std::vector<Outputs> seeds = runs("a1", {-1.2, -1.0}).seeds;  // mean -1.1, deviation sqrt(0.02)
+  const auto passed = compare_with_reference(seeds, {least}, {"a1"});
+  ASSERT_EQ(passed.size(), 1u);
+  EXPECT_NEAR(passed[0].z.value(), -0.06 / std::sqrt(0.02), 1e-9);
+  least.value = -2;
+  EXPECT_EQ(compare_with_reference(seeds, {least}, {"a1"})[0].z.value(), 0) << "kept";
+  least.kind = "measured";
+  EXPECT_TRUE(compare_with_reference(seeds, {least}, {"a1"}).empty()) << "of single places";
+}
+
+TEST(Reproduction, SaysWhatAgreesAndWhatDoesNot) {
+  CaseResult a1 = runs("a1", {-1.0, -1.1});
+  const ReferenceValue near{"A1", "chi", "S1", "pfc3d", -1.04, 0.33, "-", "eq", "line 1840"};
+  const ReferenceValue far{"A1", "chi", "S6", "pfc3d", 0.9, 0.09, "-", "eq", "line 1855"};
+  a1.comparison = compare_with_reference(a1.seeds, {near, far}, {"A1"});
+  a1.missing = 3;
+  const auto lines = reproduction_in_words({a1}, {});
+  EXPECT_THAT(lines, Contains("a1: 2 runs done, 3 not run, 0 failed"));
+  EXPECT_THAT(lines, Contains("1 of 2 values printed of PFC3D agree within two standard deviations (50 %)"));
+  EXPECT_THAT(lines, Contains(HasSubstr("does not agree: A1 chi S6 (PFC3D): printed 0.9, here 0.3")));
+}
+
+TEST(Reproduction, ReportHasItsTablesAndFigures) {
+  const fs::path folder = fs::path(testing::TempDir()) / "scree_reproduction";
+  fs::remove_all(folder);
+  CaseResult a1 = runs("a1", {-1.0, -1.1}), b1 = runs("b1", {-0.5, -0.6});
+  for (CaseResult* each : {&a1, &b1})
+    for (Outputs& seed : each->seeds)
+      for (int k = 2; k < 6; ++k) seed["chi_S" + std::to_string(k)] = 0.1 * k;
+  a1.comparison = compare_with_reference(
+      a1.seeds, {{"A1", "chi", "S1", "pfc3d", -1.04, 0.33, "-", "eq", "line 1840"}}, {"A1"});
+  const auto trends = compare_trends({a1, b1}, {{"b1", "a1", "chi", "S1", 0.28, false, false, "line 1840"}});
+  write_reproduction({a1, b1}, trends, folder);
+  std::ifstream in(folder / "report.html");
+  std::ostringstream page;
+  page << in.rdbuf();
+  EXPECT_THAT(page.str(), HasSubstr("same direction"));
+  EXPECT_THAT(page.str(), HasSubstr("4 of 4")) << "signs of both seeds";
+  EXPECT_THAT(page.str(), HasSubstr("figure 6.7 of the thesis"));
+  EXPECT_TRUE(fs::exists(folder / "pictures" / "payload_chi.svg"));
+  EXPECT_FALSE(fs::exists(folder / "pictures" / "lab_chi.svg")) << "no such runs";
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace scree
