@@ -2,6 +2,7 @@
 #include "analysis/inside_pictures.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <stdexcept>
@@ -25,6 +26,8 @@ class InsidePictures : public testing::Test {
     fixed_ = {ball};
   }
 
+  ~InsidePictures() override { std::filesystem::remove_all(folder_); }
+
   static void expect_png(const Picture& picture) {
     std::ifstream in(picture.file, std::ios::binary);
     std::string start(4, ' ');
@@ -34,7 +37,8 @@ class InsidePictures : public testing::Test {
     EXPECT_FALSE(picture.title.empty() || picture.caption.empty());
   }
 
-  const std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "scree_inside_pictures";
+  const std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / ("scree_inside_pictures_" + std::to_string(getpid()));
   std::vector<Grain> pile_ = fake_seed(1).final_state.grains, fixed_;
   VerticalSection section_;
 };
