@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -13,6 +14,8 @@ namespace {
 // Okabe and Ito's colours, without yellow.
 constexpr std::array<const char*, 7> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                               "#e69f00", "#56b4e9", "#333333"};
+
+constexpr double kDodge = 0.008;  // of the width, between cases, so that bars do not hide each other
 
 struct Look {
   const char* name;
@@ -35,12 +38,20 @@ Look look(ChartSeries::Kind kind) {
 }  // namespace
 
 void draw(const ProfileChart& chart, const std::filesystem::path& file) {
+  double low = INFINITY, high = -INFINITY;
+  int colours = 0;
+  for (const ChartSeries& series : chart.series) {
+    colours = std::max(colours, series.colour + 1);
+    for (const auto& p : series.points) low = std::min(low, p.x), high = std::max(high, p.x);
+  }
+  const double width = high > low ? high - low : 0, middle = 0.5 * (colours - 1);
   std::string script, plots;
   for (std::size_t k = 0; k < chart.series.size(); ++k) {
     const ChartSeries& series = chart.series[k];
     script += fmt::format("$s{} << END\n", k);
     for (const auto& p : series.points)
-      script += fmt::format("{} {} {}\n", p.x, p.y, std::isfinite(p.std) ? p.std : 0.0);
+      script += fmt::format("{} {} {}\n", p.x + kDodge * width * (series.colour - middle), p.y,
+                            std::isfinite(p.std) ? p.std : 0.0);
     script += "END\n";
     const Look shown = look(series.kind);
     const char* colour = kColours[static_cast<std::size_t>(series.colour) % kColours.size()];
