@@ -25,7 +25,7 @@ Meaning meaning_of(const ReferenceValue& reference) {
     return Meaning::value;
   if (relation == "gt" || relation == "min") return Meaning::at_least;
   if (relation == "lt" || relation == "le" || relation == "max") return Meaning::at_most;
-  return Meaning::none;
+  return relation == "range" ? Meaning::range : Meaning::none;
 }
 
 std::vector<Comparison> compare_with_reference(const std::vector<Outputs>& seeds,
@@ -50,6 +50,9 @@ std::vector<Comparison> compare_with_reference(const std::vector<Outputs>& seeds
       const double printed_std = row.std.value_or(row.rounding / std::sqrt(3.0));
       const double deviation = std::hypot(printed_std, comparison.simulated_std.value_or(0));
       double difference = simulated.mean - row.value;
+      if (meaning == Meaning::range)
+        difference =
+            simulated.mean < row.value ? difference : std::max(simulated.mean - row.upper.value(), 0.0);
       if (meaning == Meaning::at_least) difference = std::min(difference, 0.0);
       if (meaning == Meaning::at_most) difference = std::max(difference, 0.0);
       if (deviation > 0 && (row.std || comparison.simulated_std)) comparison.z = difference / deviation;

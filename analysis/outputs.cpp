@@ -159,27 +159,32 @@ std::vector<Outputs> outputs_of(const std::vector<SeedResult>& seeds) {
   return all;
 }
 
-std::optional<double> output_for(const ReferenceValue& reference, const Outputs& outputs) {
+std::optional<std::string> output_name_for(const ReferenceValue& reference, const Outputs& outputs) {
   const std::string name = output_name(reference.quantity);
-  const auto value = [&](const std::string& key) -> std::optional<double> {
-    const auto found = outputs.find(key);
-    return found == outputs.end() ? std::nullopt : std::optional(found->second);
+  const auto if_there = [&](const std::string& key) {
+    return outputs.contains(key) ? std::optional(key) : std::nullopt;
   };
-  if (reference.section == "whole" || reference.quantity == "toe_width") return value(name);
   const int own = whole_number(outputs, "sections"), dumps = whole_number(outputs, "dumps");
   const int count = section_count(reference);
+  if (reference.section == "whole") return if_there(name);
+  if (reference.quantity == "toe_width") return own == count ? if_there(name) : std::nullopt;
   std::string section = reference.section;
   for (int i = 0; i < 3; ++i)
     if (section == kCells[i]) {
-      if (const auto cell = value(fmt::format("{}_{}", name, section))) return cell;
+      if (const auto cell = if_there(fmt::format("{}_{}", name, section))) return cell;
       section = fmt::format("S{}", i + 1);
     }
   const auto after = [&](int dump) {
-    return value(fmt::format("{}_{}{}", name, section, suffix(count, own, dump, dumps)));
+    return if_there(fmt::format("{}_{}{}", name, section, suffix(count, own, dump, dumps)));
   };
   if (reference.dumps > 0 && reference.dumps != dumps)
     if (const auto then = after(reference.dumps)) return then;
   return after(dumps);
+}
+
+std::optional<double> output_for(const ReferenceValue& reference, const Outputs& outputs) {
+  const auto name = output_name_for(reference, outputs);
+  return name ? std::optional(outputs.at(*name)) : std::nullopt;
 }
 
 std::string why_not_given(const std::string& experiment, const std::string& output) {

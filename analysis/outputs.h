@@ -25,6 +25,7 @@ std::vector<Outputs> outputs_of(const std::vector<SeedResult>& seeds);
 
 /// The output that a printed value is to be held against, of those given; none if there is none. A value of
 /// the pile after some dump is held against that pile, or against the finished one where that was not kept.
+std::optional<std::string> output_name_for(const ReferenceValue& reference, const Outputs& outputs);
 std::optional<double> output_for(const ReferenceValue& reference, const Outputs& outputs);
 
 /// Empty if a scenario with an experiment of this type (end_dump, push_dump, bucket_dump, repose_lift,

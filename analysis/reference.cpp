@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "analysis/csv_table.h"
@@ -14,6 +15,21 @@ double half_of_last_digit(const std::string& number) {
   const auto point = number.find('.');
   return 0.5 *
          std::pow(10.0, point == std::string::npos ? 0.0 : -static_cast<double>(number.size() - point - 1));
+}
+
+// Makes a range of a bound and the other one of the same, if that is there.
+bool joined(const ReferenceValue& row, std::vector<ReferenceValue>& values) {
+  if (row.relation != "min" && row.relation != "max") return false;
+  for (ReferenceValue& other : values) {
+    if (other.case_name != row.case_name || other.quantity != row.quantity || other.section != row.section ||
+        other.kind != row.kind || other.relation != (row.relation == "min" ? "max" : "min"))
+      continue;
+    other.upper = std::max(row.value, other.value);
+    other.value = std::min(row.value, other.value);
+    other.relation = "range";
+    return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -41,7 +57,7 @@ std::vector<ReferenceValue> read_reference(const std::filesystem::path& file) {
         table.fail(fmt::format("dumps {} is no number of 1 or more", *dumps));
       row.dumps = static_cast<int>(*dumps);
     }
-    values.push_back(std::move(row));
+    if (!joined(row, values)) values.push_back(std::move(row));
   }
   return values;
 }

@@ -73,7 +73,7 @@ std::vector<Series> printed(const RunResult& result, const std::string& quantity
   std::map<std::pair<std::string, std::string>, Series> by_source;
   for (const Comparison& row : result.comparison) {
     const ReferenceValue& reference = row.reference;
-    if (reference.quantity != quantity) continue;
+    if (reference.quantity != quantity || meaning_of(reference) != Meaning::value) continue;
     const double x = place_on_slope(reference.section, sections_of_case(result, reference.case_name));
     if (std::isnan(x)) continue;
     Series& series = by_source[{reference.kind, reference.case_name}];

@@ -171,12 +171,17 @@ std::string kind_in_words(const std::string& kind) {
 }
 
 std::string quantity_in_words(const std::string& quantity) {
-  static const std::map<std::string, std::string> words{{"chi", "segregation degree χ"},
-                                                        {"mass_t", "mass"},
-                                                        {"angle", "repose angle"},
-                                                        {"slope_angle", "slope angle"},
-                                                        {"share_above_1m", "share of all rock above 1 m"},
-                                                        {"share_above_1m_orig", "rock above 1 m, as dumped"}};
+  static const std::map<std::string, std::string> words{
+      {"chi", "segregation degree χ"},
+      {"mass_t", "mass"},
+      {"xl_chi_zero", "place x/L where χ changes sign"},
+      {"toe_width", "width at the toe of the first point's rock"},
+      {"lateral_chi_range", "largest difference of χ across"},
+      {"rebound_height", "rebound height"},
+      {"angle", "repose angle"},
+      {"slope_angle", "slope angle"},
+      {"share_above_1m", "share of all rock above 1 m"},
+      {"share_above_1m_orig", "rock above 1 m, as dumped"}};
   if (const auto found = words.find(quantity); found != words.end()) return found->second;
   if (quantity.size() >= 3 && quantity[0] == 'd' && quantity.find_first_not_of("0123456789", 1) >= 3) {
     const std::string size = fmt::format("D{}", quantity.substr(1, quantity.find('_') - 1));

@@ -12,9 +12,12 @@ namespace scree {
 /// One case and its finished runs.
 struct CaseResult {
   std::string name, title;
-  std::vector<Outputs> seeds;  ///< of the runs that are done
+  std::vector<Outputs> seeds;  ///< of the runs that are done and came to rest
   int failed = 0, missing = 0;
-  double wall_seconds = 0;  ///< of all its runs together
+  int restless = 0;            ///< runs left out because a load still moved at its time limit
+  double largest_overlap = 0;  ///< over the smaller radius, of all its runs
+  double lost_mass = 0;        ///< t, of all its runs
+  double wall_seconds = 0;     ///< of all its runs together
   std::vector<Comparison> comparison;
 };
 
@@ -28,20 +31,34 @@ struct Trend {
   std::string source;
 };
 
+/// What seeds can say of a printed difference.
+enum class TrendVerdict {
+  unknown,     ///< fewer than two seeds of a case, or no scatter
+  agrees,      ///< beyond the scatter of seeds, in the printed direction, and the printed size is within the
+               ///< interval
+  other_size,  ///< beyond the scatter, in the printed direction, of another size
+  opposite,    ///< beyond the scatter, in the other direction
+  undecided,   ///< seeds alone may differ so much
+  within,      ///< of a bound: the whole interval lies within it
+  beyond,      ///< of a bound: the whole interval lies beyond it
+};
+
 /// A printed difference and ours.
 struct TrendComparison {
   Trend trend;
-  double difference = 0;     ///< ours, of the means over seeds
-  double low = 0, high = 0;  ///< its 95 % interval from the scatter of seeds (Welch)
-  double p = 1;              ///< two-sided probability that seeds alone differ so much (Welch's t test)
+  double difference = 0;  ///< ours, of the means over seeds; NaN when unknown
+  double low = 0,
+         high = 0;  ///< its 95 % interval from the scatter of seeds (Welch; delta method for a ratio)
+  double p = 1;     ///< two-sided probability that seeds alone differ so much (Welch's t test)
+  TrendVerdict verdict = TrendVerdict::unknown;
 };
 
 /// Reads assets/reference/trends.csv (case,against,quantity,section,difference,relative,relation,source).
 /// Throws std::runtime_error `file:line: what is wrong`.
 std::vector<Trend> read_trends(const std::filesystem::path& file);
 
-/// The trends whose two cases both have at least two seeds with the quantity. Names of cases are compared
-/// without regard to upper and lower case.
+/// The trends both of whose cases are there, in their order. Names of cases are compared without regard to
+/// upper and lower case.
 std::vector<TrendComparison> compare_trends(const std::vector<CaseResult>& cases,
                                             const std::vector<Trend>& trends);
 

@@ -156,9 +156,27 @@ std::vector<Picture> draw_figures(const std::vector<CaseResult>& cases, const st
     pictures.push_back(
         {fmt::format("{} (figure {} of the thesis)", spec.title, spec.figure), file,
          "Dots with a line: mean and standard deviation of the seeds simulated here. Squares: PFC3D; "
-         "triangles: measured; both where the thesis prints numbers."});
+         "triangles: measured; both where the thesis prints numbers." +
+             std::string(spec.dumps > 0 ? fmt::format(" Simulated after load {}.", spec.dumps) : "")});
   }
   return pictures;
+}
+
+std::string limits(const std::vector<CaseResult>& cases) {
+  double overlap = 0, lost = 0;
+  for (const CaseResult& each : cases)
+    overlap = std::max(overlap, each.largest_overlap), lost += each.lost_mass;
+  std::string items;
+  if (overlap > 0.1)
+    items += fmt::format(
+        "<li>The largest overlap was {:.0f} % of the smaller radius: small spheres under large blocks, at "
+        "the "
+        "thesis's modulus.</li>\n",
+        100 * overlap);
+  if (lost > 0)
+    items += fmt::format("<li>{} t in all runs together left the model.</li>\n", number_text(lost));
+  if (items.empty()) return items;
+  return "<div class=\"notes\" role=\"note\"><strong>Read with care</strong><ul>\n" + items + "</ul></div>\n";
 }
 
 std::string signs_table(const std::vector<CaseResult>& cases) {
@@ -187,22 +205,28 @@ std::string signs_table(const std::vector<CaseResult>& cases) {
          rows + "</tbody></table></div>\n";
 }
 
-const char* style_of(const TrendComparison& row) {
-  if (row.trend.bound)
-    return std::abs(row.difference) <= row.trend.difference ? "agrees" : row.p < 0.05 ? "differs" : "unknown";
-  const bool same = row.difference * row.trend.difference > 0;
-  return row.p < 0.05 ? same ? "close" : "differs" : "unknown";
-}
+struct TrendLook {
+  const char *style, *words;
+};
 
-const char* words_of(const TrendComparison& row) {
-  if (row.trend.bound)
-    return std::abs(row.difference) <= row.trend.difference ? "within the bound"
-           : row.p < 0.05                                   ? "beyond the bound"
-                                                            : "beyond the bound, within the scatter";
-  const bool same = row.difference * row.trend.difference > 0;
-  return row.p < 0.05 ? same ? "same direction" : "opposite direction"
-         : same       ? "same direction, within the scatter"
-                      : "opposite direction, within the scatter";
+TrendLook look(TrendVerdict verdict) {
+  switch (verdict) {
+    case TrendVerdict::agrees:
+      return {"close", "same direction and size"};
+    case TrendVerdict::other_size:
+      return {"agrees", "same direction, other size"};
+    case TrendVerdict::opposite:
+      return {"differs", "opposite direction"};
+    case TrendVerdict::within:
+      return {"close", "within the bound"};
+    case TrendVerdict::beyond:
+      return {"differs", "beyond the bound"};
+    case TrendVerdict::undecided:
+      return {"unknown", "not decided by these seeds"};
+    case TrendVerdict::unknown:
+      break;
+  }
+  return {"unknown", "not judged: two seeds of both are needed"};
 }
 
 std::string trends_table(const std::vector<TrendComparison>& trends) {
@@ -210,7 +234,8 @@ std::string trends_table(const std::vector<TrendComparison>& trends) {
   std::string out =
       "<h2>Differences between cases</h2>\n<p>p is the probability that seeds alone differ so much (Welch's "
       "t "
-      "test); below 0.05 a difference is beyond their scatter. Percentages are over the magnitude of the "
+      "test); below 0.05 a difference is taken to be beyond their scatter, which one in twenty is by chance. "
+      "Percentages are over the magnitude of the "
       "second "
       "case's value.</p>\n<div class=\"wide\"><table><thead><tr><th class=\"word\">Case</th><th "
       "class=\"word\">against</th><th class=\"word\">Quantity</th><th "
@@ -220,7 +245,9 @@ std::string trends_table(const std::vector<TrendComparison>& trends) {
   for (const TrendComparison& row : trends) {
     const Trend& t = row.trend;
     const auto text = [&](double value) {
-      return t.relative ? decimals_text(100 * value, 0) + " %" : decimals_text(value, 2);
+      return !std::isfinite(value) ? std::string("–")
+             : t.relative          ? decimals_text(100 * value, 0) + " %"
+                                   : decimals_text(value, 2);
     };
     out += fmt::format(
         "<tr><td class=\"word\">{}</td><td class=\"word\">{}</td><td class=\"word\">{}</td><td "
@@ -228,8 +255,8 @@ std::string trends_table(const std::vector<TrendComparison>& trends) {
         "{}\">{}</td><td class=\"word\">{}</td></tr>\n",
         html_escaped(t.case_name), html_escaped(t.against), html_escaped(quantity_in_words(t.quantity)),
         html_escaped(t.section), t.bound ? "|·| ≤ " : "", text(t.difference), text(row.difference),
-        text(row.low), text(row.high), row.p < 0.001 ? "&lt; 0.001" : decimals_text(row.p, 3), style_of(row),
-        words_of(row), html_escaped(t.source));
+        text(row.low), text(row.high), row.p < 0.001 ? "&lt; 0.001" : decimals_text(row.p, 3),
+        look(row.verdict).style, look(row.verdict).words, html_escaped(t.source));
   }
   return out + "</tbody></table></div>\n";
 }
@@ -243,7 +270,7 @@ void write_reproduction(const std::vector<CaseResult>& cases, const std::vector<
   std::string body = "<h2>What agrees and what does not</h2>\n<ul>\n";
   for (const std::string& line : reproduction_in_words(cases, trends))
     body += fmt::format("<li>{}</li>\n", html_escaped(line));
-  body += "</ul>\n" + signs_table(cases) + trends_table(trends);
+  body += "</ul>\n" + limits(cases) + signs_table(cases) + trends_table(trends);
   body += figures("Figures", draw_figures(cases, pictures));
   body += "<h2>Every printed value</h2>\n";
   double seconds = 0;

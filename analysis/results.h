@@ -57,18 +57,19 @@ struct ReferenceValue {
   double value = 0;
   std::optional<double> std;
   std::string unit;
-  std::string relation;  ///< eq, approx, lt, gt, ...
-  std::string source;    ///< table or line of the source
-  double rounding = 0;   ///< half of the last digit printed
-  int dumps = 0;         ///< number of dumps in the pile it was read from; 0: not stated
+  std::string relation;                        ///< eq, approx, lt, gt, range ...
+  std::string source;                          ///< table or line of the source
+  std::optional<double> upper = std::nullopt;  ///< of a range; its lower end is `value`
+  double rounding = 0;                         ///< half of the last digit printed
+  int dumps = 0;  ///< number of dumps in the pile it was read from; 0: not stated
 };
 
 /// Into how many sections the slope of a printed case was cut: told by the names top, middle, bottom (3) or
 /// by the case's name (cm_field_3sec, qb_field_5sec); 6 otherwise (thesis, chapter 6).
 int section_count(const ReferenceValue& reference);
 
-/// What a printed number says of the mean: the value itself, a bound, or (medians) nothing.
-enum class Meaning { value, at_least, at_most, none };
+/// What a printed number says of the mean: the value itself, a bound, two bounds, or (medians) nothing.
+enum class Meaning { value, at_least, at_most, range, none };
 Meaning meaning_of(const ReferenceValue& reference);
 
 /// The numbers of one seed of a run, by name (outputs.h).
@@ -95,7 +96,8 @@ struct RunResult {
   double wall_seconds = 0;         ///< of the whole command
 };
 
-/// Reads assets/reference/results.csv (case,quantity,section,kind,value,std,unit,relation,source,dumps).
+/// Reads assets/reference/results.csv (case,quantity,section,kind,value,std,unit,relation,source,dumps). A
+/// `min` and a `max` of the same become one `range`.
 std::vector<ReferenceValue> read_reference(const std::filesystem::path& file);
 
 /// Holds the numbers of a run's seeds against reference cases (output_for in outputs.h says which number

@@ -12,6 +12,8 @@
 namespace scree {
 namespace {
 
+constexpr double kSignificant = 0.05;
+
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
   return text;
@@ -32,6 +34,38 @@ MeanStd spread(const CaseResult& result, const Trend& trend) {
   for (const Outputs& seed : result.seeds)
     if (const auto value = output_for(what, seed)) values.push_back(*value);
   return mean_std(values);
+}
+
+TrendVerdict judged(const TrendComparison& c) {
+  const double printed = c.trend.difference;
+  if (c.trend.bound) {
+    if (c.low > printed || c.high < -printed) return TrendVerdict::beyond;
+    return c.low >= -printed && c.high <= printed ? TrendVerdict::within : TrendVerdict::undecided;
+  }
+  if (c.p >= kSignificant) return TrendVerdict::undecided;
+  if (c.difference * printed < 0) return TrendVerdict::opposite;
+  return c.low <= printed && printed <= c.high ? TrendVerdict::agrees : TrendVerdict::other_size;
+}
+
+TrendComparison compared(const Trend& trend, const MeanStd& a, const MeanStd& b) {
+  TrendComparison result{trend};
+  result.difference = result.low = result.high = result.p = std::nan("");
+  const double scale = trend.relative ? std::abs(b.mean) : 1;
+  if (a.n < 2 || b.n < 2 || !(scale > 0)) return result;
+  const double va = a.std * a.std / a.n, vb = b.std * b.std / b.n, error = std::sqrt(va + vb);
+  if (!(error > 0)) return result;
+  // Welch, Biometrika 34 (1947) 28: degrees of freedom of two samples of unequal variance.
+  const double freedom = (va + vb) * (va + vb) / (va * va / (a.n - 1) + vb * vb / (b.n - 1));
+  const boost::math::students_t distribution(freedom);
+  // Of a relative difference the scale scatters, too: var(a / b) = va / b^2 + a^2 vb / b^4.
+  const double spread =
+      trend.relative ? std::sqrt(va + a.mean * a.mean * vb / (b.mean * b.mean)) / scale : error;
+  const double wide = boost::math::quantile(distribution, 0.975) * spread;
+  result.difference = (a.mean - b.mean) / scale;
+  result.low = result.difference - wide, result.high = result.difference + wide;
+  result.p = 2 * boost::math::cdf(boost::math::complement(distribution, std::abs(a.mean - b.mean) / error));
+  result.verdict = judged(result);
+  return result;
 }
 
 }  // namespace
@@ -61,19 +95,7 @@ std::vector<TrendComparison> compare_trends(const std::vector<CaseResult>& cases
   for (const Trend& trend : trends) {
     const CaseResult *here = find(cases, trend.case_name), *there = find(cases, trend.against);
     if (here == nullptr || there == nullptr) continue;
-    const MeanStd a = spread(*here, trend), b = spread(*there, trend);
-    if (a.n < 2 || b.n < 2) continue;
-    const double va = a.std * a.std / a.n, vb = b.std * b.std / b.n;
-    const double scale = trend.relative ? std::abs(b.mean) : 1;
-    const double error = std::sqrt(va + vb), difference = a.mean - b.mean;
-    if (!(error > 0) || !(scale > 0)) continue;
-    // Welch, Biometrika 34 (1947) 28: degrees of freedom of two samples of unequal variance.
-    const double freedom = (va + vb) * (va + vb) / (va * va / (a.n - 1) + vb * vb / (b.n - 1));
-    const boost::math::students_t distribution(freedom);
-    const double wide = boost::math::quantile(distribution, 0.975) * error;
-    comparisons.push_back(
-        {trend, difference / scale, (difference - wide) / scale, (difference + wide) / scale,
-         2 * boost::math::cdf(boost::math::complement(distribution, std::abs(difference) / error))});
+    comparisons.push_back(compared(trend, spread(*here, trend), spread(*there, trend)));
   }
   return comparisons;
 }

@@ -24,6 +24,7 @@ Examples:
   scree run scenarios/canadian_malartic_10m.yaml         four truck loads, and a report beside what was measured
   scree run scenarios/a1_10m.yaml --seeds 5 --set material.mu=0.5
   scree sweep scenarios/sweeps/repose_lab.yaml           the repose angle over 16 pairs of friction
+  scree reproduce a1 b1 --seeds 2                        cases of the thesis beside what it prints
   scree calibrate scenarios/calibrations/lab_angle.yaml  friction from a measured repose angle
   scree compare runs/canadian_malartic_10m               the comparison of a run, as a table
   scree validate scenarios/a1_10m.yaml                   check a file without running it
@@ -33,7 +34,8 @@ Examples:
 }  // namespace
 
 std::filesystem::path asset_dir() {
-  if (const char* given = std::getenv("SCREE_ASSETS")) return given;
+  if (const char* given = std::getenv("SCREE_ASSETS"))
+    return (std::filesystem::path(given) / "").lexically_normal().parent_path();
   // Beside the program, in a folder above it, or where it was built.
   std::error_code error;
   std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
@@ -129,18 +131,24 @@ int main(int argc, char** argv) {
   reproduce_app->add_option("--seeds", reproduce.seeds, "Seeds of each case, at most")
       ->check(CLI::Range(1, 1000));
   reproduce_app->add_option("--store", reproduce.store, "Results store; default: runs/store.sqlite");
-  reproduce_app->add_option("--out", reproduce.out, "Folder for the report; default: runs/reproduction");
+  reproduce_app->add_option("--out", reproduce.out,
+                            "Folder for the report; default: a free runs/reproduction");
   reproduce_app->add_option("--jobs", reproduce.jobs, "Runs side by side; default: as many as cores")
       ->check(CLI::Range(1, 1024));
   reproduce_app->add_flag("--again", reproduce.again, "Try runs that failed before again");
   reproduce_app->add_flag("--list", reproduce.list, "Report what the store has; run nothing");
   reproduce_app->add_flag("--force", reproduce.force, "Write into --out even if it holds something");
-  reproduce_app->add_option("--from", reproduce.from,
-                            "Take the runs from this exported table, not from a store; run nothing");
+  reproduce_app
+      ->add_option("--from", reproduce.from,
+                   "Take the runs from this exported table, not from a store; run nothing")
+      ->excludes("--store")
+      ->excludes("--again")
+      ->excludes("--list")
+      ->excludes("--jobs");
   reproduce_app->add_option("--export", reproduce.csv, "Write every run to this CSV file");
   reproduce_app->footer(
       "\nExamples:\n  scree reproduce a1 d2 --seeds 2\n"
-      "  scree reproduce --from assets/sweeps/thesis_cases.csv\n"
+      "  scree reproduce --list\n"
       "\nAn interrupted reproduction goes on where it stopped when it is started again.\n");
 
   std::filesystem::path compare_dir;

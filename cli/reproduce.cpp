@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "analysis/reproduction.h"
 #include "cli/commands.h"
@@ -24,12 +25,14 @@ std::vector<fs::path> case_files(const std::vector<std::string>& asked) {
     if (item.path().extension() == ".yaml") known.push_back(item.path().stem());
   std::sort(known.begin(), known.end());
   std::vector<fs::path> files;
-  for (const std::string& name : asked.empty() ? known : asked) {
+  for (std::string name : asked.empty() ? known : asked) {
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
     if (std::find(known.begin(), known.end(), name) == known.end()) {
       fmt::print(stderr, "{}: no such case; there are {}\n", name, fmt::join(known, ", "));
       return {};
     }
-    files.push_back(case_dir() / (name + ".yaml"));
+    const fs::path file = case_dir() / (name + ".yaml");
+    if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
   }
   return files;
 }
@@ -47,9 +50,17 @@ std::vector<scree::CaseResult> results_of(const std::vector<scree::PointResults>
         ++result.missing;
       } else if (run->state == scree::RunState::failed) {
         ++result.failed;
+      } else if (!run->at_rest()) {
+        ++result.restless;
       } else {
         result.seeds.push_back(run->outputs);
         result.wall_seconds += run->wall_seconds;
+        const auto number = [&](const char* name) {
+          const auto found = run->outputs.find(name);
+          return found == run->outputs.end() ? 0.0 : found->second;
+        };
+        result.largest_overlap = std::max(result.largest_overlap, number("largest_overlap_ratio"));
+        result.lost_mass += number("lost_mass_t");
       }
     }
     result.comparison = scree::compare_with_reference(result.seeds, reference, scenario.compare);
@@ -67,9 +78,11 @@ int run_reproduce(const ReproduceOptions& options) {
   for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
   if (!loaded.errors.empty()) return kBadInput;
   const scree::Sweep& sweep = loaded.sweep;
-  const fs::path out = options.out.empty() ? free_run_folder("reproduction") : options.out;
-  if (!prepare_folder(out, options.force)) return kBadInput;
-
+  if (!options.out.empty() && !options.force && fs::exists(options.out) && !fs::is_empty(options.out)) {
+    fmt::print(stderr, "{} holds something already; choose another --out, or --force\n",
+               options.out.string());
+    return kBadInput;
+  }
   std::vector<scree::PointResults> points;
   scree::EnsembleProgress progress;
   if (!options.from.empty()) {
@@ -90,16 +103,18 @@ int run_reproduce(const ReproduceOptions& options) {
   const fs::path reference = asset_dir() / "reference";
   const auto cases = results_of(points, scree::read_reference(reference / "results.csv"));
   const auto trends = scree::compare_trends(cases, scree::read_trends(reference / "trends.csv"));
-  scree::write_reproduction(cases, trends, out);
   if (!options.csv.empty()) {
     scree::write_sweep_csv(sweep, points, options.csv);
     fmt::print("table: {}\n", options.csv.string());
   }
   for (const std::string& line : scree::reproduction_in_words(cases, trends)) fmt::print("{}\n", line);
-  fmt::print("report: {}\n", (out / "report.html").string());
   if (interrupted) {
     fmt::print(stderr, "interrupted; the same command goes on from here\n");
     return kInterrupted;
   }
+  const fs::path out = options.out.empty() ? free_run_folder("reproduction") : options.out;
+  if (!prepare_folder(out, options.force)) return kBadInput;
+  scree::write_reproduction(cases, trends, out);
+  fmt::print("report: {}\n", (out / "report.html").string());
   return progress.failed > 0 ? kFailed : kOk;
 }

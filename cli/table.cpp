@@ -4,25 +4,42 @@
 
 #include <cmath>
 
+#include "analysis/report_text.h"
 #include "analysis/summary.h"
 
 namespace scree {
 namespace {
 
+// Three digits of the value, the deviation with the same decimals.
 std::string with_std(double mean, std::optional<double> std) {
-  if (std && !std::isnan(*std)) return fmt::format("{:.2f} +- {:.2f}", mean, *std);
-  return fmt::format("{:.2f}", mean);
+  const int decimals = decimals_of(mean);
+  if (std && !std::isnan(*std)) return fmt::format("{:.{}f} +- {:.{}f}", mean, decimals, *std, decimals);
+  return fmt::format("{:.{}f}", mean, decimals);
+}
+
+std::string printed(const ReferenceValue& reference) {
+  switch (meaning_of(reference)) {
+    case Meaning::at_least:
+      return ">= " + with_std(reference.value, reference.std);
+    case Meaning::at_most:
+      return "<= " + with_std(reference.value, reference.std);
+    case Meaning::range:
+      return with_std(reference.value, std::nullopt) + " to " +
+             with_std(reference.upper.value(), std::nullopt);
+    default:
+      return with_std(reference.value, reference.std);
+  }
 }
 
 }  // namespace
 
 void print_comparison(const std::vector<Comparison>& comparison) {
   if (comparison.empty()) return;
-  fmt::print("\n{:<16} {:<8} {:<8} {:<9} {:>17} {:>17} {:>7}\n", "case", "value", "section", "kind",
+  fmt::print("\n{:<16} {:<19} {:<8} {:<9} {:>17} {:>17} {:>7}\n", "case", "value", "section", "kind",
              "printed", "simulated", "z");
   for (const Comparison& c : comparison)
-    fmt::print("{:<16} {:<8} {:<8} {:<9} {:>17} {:>17} {:>7}\n", c.reference.case_name, c.reference.quantity,
-               c.reference.section, c.reference.kind, with_std(c.reference.value, c.reference.std),
+    fmt::print("{:<16} {:<19} {:<8} {:<9} {:>17} {:>17} {:>7}\n", c.reference.case_name, c.reference.quantity,
+               c.reference.section, c.reference.kind, printed(c.reference),
                with_std(c.simulated, c.simulated_std), c.z ? fmt::format("{:+.1f}", *c.z) : "-");
 }
 

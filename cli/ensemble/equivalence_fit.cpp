@@ -90,7 +90,7 @@ bool solve(const EquivalenceSpec& spec, const AngleMap& bullet, EquivalenceNode&
     const double here = inside ? bullet.at(friction, rolling).mean - node.angle_rrlinear : nan;
     if (before * here <= 0) {
       const double root = before_factor + (factor - before_factor) * before / (before - here);
-      if (!(std::abs(std::log(root)) > std::abs(std::log(best)))) best = root;
+      if (std::isfinite(root) && !(std::abs(std::log(root)) > std::abs(std::log(best)))) best = root;
     }
     before_factor = factor;
     before = here;

@@ -10,6 +10,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "analysis/outputs.h"
 #include "cli/ensemble/run_request.h"
 #include "sim/io/text_file.h"
 
@@ -53,6 +54,8 @@ std::optional<Number> number(const std::string& text) {
   Number value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if constexpr (std::is_floating_point_v<Number>)
+    if (!std::isfinite(value)) return std::nullopt;
   return value;
 }
 
@@ -62,16 +65,12 @@ bool same_value(const std::string& a, const std::string& b) {
   return x && y ? *x == *y : a == b;
 }
 
-// `sections`: into how many the slope of the runs is cut.
-bool is_reading_of(const std::string& output, const ReferenceValue& printed, int sections) {
+// `run`: the numbers of some run.
+bool is_reading_of(const std::string& output, const ReferenceValue& printed, const Outputs& run) {
   if (meaning_of(printed) != Meaning::value) return false;
-  const std::string &quantity = printed.quantity, &section = printed.section;
-  if (quantity == "angle")
-    return output == "angle_deg" || output == "height_over_radius_deg" || output == "half_coverage_deg";
-  if (quantity == "slope_angle") return output == "slope_angle_deg";
-  if (quantity == "rebound_height") return output == "rebound_height_m";
-  if (section_count(printed) != sections) return false;
-  return output == quantity + "_" + section || output == quantity + "_m_" + section;
+  if (printed.quantity == "angle" && (output == "height_over_radius_deg" || output == "half_coverage_deg"))
+    return true;
+  return output_name_for(printed, run) == output;
 }
 
 }  // namespace
@@ -198,12 +197,13 @@ std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const fs::path& fil
 
 SweepComparison compare_sweep(const std::vector<PointResults>& points, const std::string& output,
                               const std::vector<ReferenceValue>& reference) {
-  const std::set<std::string> names = outputs_of(points);
-  const auto sections = static_cast<int>(std::count_if(
-      names.begin(), names.end(), [](const std::string& name) { return name.starts_with("mass_t_"); }));
+  Outputs some;
+  for (const PointResults& point : points)
+    for (const auto& run : point.runs)
+      if (run && some.empty()) some = run->outputs;
   std::map<std::string, const ReferenceValue*> printed;  // by case
   for (const ReferenceValue& value : reference) {
-    if (!is_reading_of(output, value, sections)) continue;
+    if (!is_reading_of(output, value, some)) continue;
     const ReferenceValue*& here = printed[value.case_name];
     if (here == nullptr || value.kind == "pfc3d") here = &value;
   }
