@@ -7,8 +7,8 @@
 #include <limits>
 #include <map>
 #include <stdexcept>
-#include <utility>
 
+#include "analysis/mass_quantile.h"
 #include "analysis/results.h"
 
 namespace scree {
@@ -17,18 +17,8 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTail = 0.025;  // of the mass, left out at either end
 
-double width_of_bulk(std::vector<std::pair<double, double>> y_and_mass) {
-  if (y_and_mass.empty()) return nan;
-  std::sort(y_and_mass.begin(), y_and_mass.end());
-  double total = 0;
-  for (const auto& [y, mass] : y_and_mass) total += mass;
-  const auto quantile = [&](double share) {
-    double below = 0;
-    for (const auto& [y, mass] : y_and_mass)
-      if ((below += mass) >= share * total) return y;
-    return y_and_mass.back().first;
-  };
-  return quantile(1 - kTail) - quantile(kTail);
+double width_of_bulk(const std::vector<WeighedValue>& y) {
+  return mass_quantile(y, 1 - kTail) - mass_quantile(y, kTail);
 }
 
 double range_of(const std::vector<double>& values) {
@@ -46,18 +36,18 @@ Lateral analyse_lateral(const std::vector<Grain>& pile, const std::vector<Grain>
         fmt::format("{} sections, {} dump points, strips of {} m, crest at {} m: all must be above 0", n,
                     points, strip_width, crest_height));
   std::vector<std::map<int, NamedGrains>> strips(static_cast<std::size_t>(n));
-  std::vector<std::pair<double, double>> first_point;
+  std::vector<WeighedValue> first_point;
   for (const Grain& grain : pile) {
     const int slice = slice_of(grain, crest_height, n);
     if (slice < 0) continue;
     const double y = grain.position.y();
     strips[static_cast<std::size_t>(slice)][static_cast<int>(std::lround(y / strip_width))].grains.push_back(
         &grain);
-    if (slice == n - 1 && (grain.dump - 1) % points == 0) first_point.emplace_back(y, grain.mass);
+    if (slice == n - 1 && (grain.dump - 1) % points == 0) first_point.push_back({y, grain.mass});
   }
   Lateral lateral;
   lateral.strip_width = strip_width;
-  lateral.point1_toe_width = width_of_bulk(std::move(first_point));
+  lateral.point1_toe_width = width_of_bulk(first_point);
   for (int k = 0; k < n; ++k) {
     LateralSection section;
     section.name = fmt::format("S{}", k + 1);

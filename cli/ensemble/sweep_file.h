@@ -31,7 +31,7 @@ struct SweepResult {
 /// Reads a sweep file:
 ///   scenario: repose_lab.yaml       relative to the sweep file
 ///   seeds: [1, 2, 3]                default: those of the scenario
-///   set: {material.alpha: 0.4}      further values that differ from the scenario's
+///   set: {material.local_damping: 0.4}   further values that differ from the scenario's
 ///   ties: {material.mu_r: material.mu}   the first key takes the value of the second
 ///   compare: lab_repose_{material.mu}_{material.mu_r}   printed case of each point
 ///   design:

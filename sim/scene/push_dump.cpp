@@ -85,7 +85,7 @@ class Pushing {
     return stage_.advance_to_rest("dumping", part.at(0), part.at(1));
   }
 
-  // Takes heaps of this mass (kg) towards the crest.
+  // Takes heaps towards the crest; `mass` (kg) is that of all loads so far.
   bool pass_over(double mass, const Part& part) {
     const BladeReach reach = reach_of(mesh_);
     const double end = std::min(0.0, e_.blade.overshoot), allowed = e_.blade.left_share * mass;
@@ -141,7 +141,11 @@ RunOutcome run_push_dump(const Scenario& scenario, const PushDump& e, std::uint6
   const double toe = toe_of(e.bench), half = 0.5 * e.bench.width;
   const double ground = standing_height(e.bench);
   const Vec3 low(-e.bench.top_length - 2, -half - 2, -3);
-  const Vec3 high(toe + e.bench.floor_length + 2, half + 2, ground + 3 * e.load_box.norm());
+  // Heaps at one place are laid upon each other.
+  const int places = static_cast<int>(e.points.size() * e.rows.size());
+  const int stacked = e.side_walls ? 1 : (e.dumps + places - 1) / places;
+  const Vec3 high(toe + e.bench.floor_length + 2, half + 2,
+                  ground + 3 * e.load_box.norm() + (stacked - 1) * 2 * e.load_box.z());
   Stage stage(scenario, seed, threads, hooks, low, high);
 
   std::vector<Pose> boxes;  // the middle of the front's lower edge of each load
@@ -172,7 +176,7 @@ RunOutcome run_push_dump(const Scenario& scenario, const PushDump& e, std::uint6
       if (at_once && dump < e.dumps) continue;
       const Part passes =
           at_once ? Part{laying, 1 - laying} : Part{begin + laying * part, (1 - laying) * part};
-      if (!pushing.pass_over(at_once ? e.payload * e.dumps : e.payload, passes)) return stage.finish();
+      if (!pushing.pass_over(e.payload * dump, passes)) return stage.finish();
     }
     stage.dump_done(dump, e.dumps);
   }

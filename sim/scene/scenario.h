@@ -159,7 +159,7 @@ struct Numerics {
   std::optional<double> impulse_rolling;   ///< Bullet's over the effective radius; none: as above
 };
 
-/// A row of `compare`: against which of the reference cases in assets/reference the result is held.
+/// What is written and analysed.
 struct OutputSpec {
   double frame_interval = 1.0;  ///< s of simulated time between frames of the trajectory; 0: only the last
   int sections = 6;

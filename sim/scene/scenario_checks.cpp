@@ -79,7 +79,22 @@ class Checks {
                path, count / 1e6, load, grading_->name(), kMaxSpheres / 1e6, cure));
   }
 
+  // Piles that are asked for but never there.
+  void piles(int dumps) {
+    if (!notes_.good({&s_.output.after_dumps})) return;
+    for (const int dump : s_.output.after_dumps)
+      if (dump >= dumps) {
+        fail(&s_.output.after_dumps,
+             fmt::format(
+                 "output.after_dumps: {} of {} dumps; the pile after the last one is analysed anyway, and "
+                 "later ones are never there",
+                 dump, dumps));
+        return;
+      }
+  }
+
   void end_dump(const EndDump& e) {
+    if (notes_.good({&e.dumps})) piles(e.dumps);
     if (e.truck.release == Release::hoist && notes_.good({&e.truck.tilt_deg}) && e.truck.tilt_deg <= 0)
       fail(&e.truck.tilt_deg,
            "experiment.truck.tilt_deg: 0 with release hoist: the bed must tilt, more than 0");
@@ -87,6 +102,7 @@ class Checks {
   }
 
   void push_dump(const PushDump& e) {
+    if (notes_.good({&e.dumps})) piles(e.dumps);
     bench_loads(e, e.load_box, "experiment.load_box_m", "the load");
     if (notes_.good({&e.load_box, &e.distance, &e.rows, &e.bench.top_length}) && !e.rows.empty()) {
       const auto last = std::max_element(e.rows.begin(), e.rows.end());
@@ -315,6 +331,19 @@ void find_bullet_settings(Scenario& s, const fs::path& asset_dir, ReadNotes& not
     return;
   }
   const fs::path file = asset_dir / "impulse" / "equivalent.csv";
+  // The table was made with these.
+  const Material made_with;
+  if (s.material.effective_modulus != made_with.effective_modulus ||
+      s.material.stiffness_ratio != made_with.stiffness_ratio ||
+      s.material.damping_reach != made_with.damping_reach || s.material.normal_damping_ratio != 0 ||
+      s.material.shear_damping_ratio != 0) {
+    report(
+        notes.errors, notes.places.at(&s.material.mu),
+        fmt::format("engine impulse: equivalent settings of Bullet are known for effective_modulus_pa {:g}, "
+                    "stiffness_ratio {:g}, damping_reach always and no dashpots alone; {}",
+                    made_with.effective_modulus, made_with.stiffness_ratio, way_out));
+    return;
+  }
   try {
     const Equivalence table = Equivalence::read(file);
     s.bullet = table.at(s.material.mu, s.material.mu_r, s.material.local_damping);

@@ -46,7 +46,7 @@ btScalar combined_rolling(const btCollisionObject* a, const btCollisionObject* b
   return curvature > 0 ? mu_r / curvature : btScalar(0);
 }
 
-btScalar no_restitution(const btCollisionObject*, const btCollisionObject*) {
+btScalar zero(const btCollisionObject*, const btCollisionObject*) {
   return 0;
 }
 
@@ -56,8 +56,8 @@ ImpulseWorld::ImpulseWorld(const WorldSettings& settings) : RockWorld(settings) 
   // Bullet keeps these as globals; every ImpulseWorld wants the same.
   gCalculateCombinedFrictionCallback = combined_friction;
   gCalculateCombinedRollingFrictionCallback = combined_rolling;
-  gCalculateCombinedSpinningFrictionCallback = no_restitution;
-  gCalculateCombinedRestitutionCallback = no_restitution;
+  gCalculateCombinedSpinningFrictionCallback = zero;
+  gCalculateCombinedRestitutionCallback = zero;
   // Lengths in metres, not shares of each shape's size.
   auto& pairs = static_cast<btCollisionDispatcher&>(*getDispatcher());
   pairs.setDispatcherFlags(pairs.getDispatcherFlags() &

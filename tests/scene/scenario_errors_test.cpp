@@ -260,6 +260,8 @@ const BadCase kBadCases[] = {
      {"3:70: experiment.blade.left_share: 1 is out of range; allowed 0 to less than 1"}},
     {"PushAllBetweenWalls", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: push_dump, push_after: all_loads}\n",
      {"3:13: experiment.push_after: all_loads, but the blade comes after each load between side walls; set side_walls: false"}},
+    {"AfterDumpsThatAreNot", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump, dumps: 4}\noutput: {after_dumps: [2, 9]}\n",
+     {"4:23: output.after_dumps: 9 of 4 dumps; the pile after the last one is analysed anyway, and later ones are never there"}},
     {"PushAllAfterDumps", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: push_dump, side_walls: false, push_after: all_loads}\noutput: {after_dumps: [2]}\n",
      {"4:23: output.after_dumps: with push_after all_loads there is no pile before the last dump; leave it empty"}},
     {"PushRowNegative", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: push_dump, rows_m: [-3]}\n",

@@ -288,6 +288,11 @@ TEST(Impulse, TakesWhatIsEquivalentUnlessTold) {
   EXPECT_DOUBLE_EQ(bullet("numerics: {impulse_friction: 0.9, impulse_rolling: 0.8}\n").rolling, 0.8);
   EXPECT_DOUBLE_EQ(bullet("numerics: {impulse_friction: equivalent}\n").friction, 0.35);
   EXPECT_FALSE(folder.load(head + "numerics: {impulse_iterations: 50}\n").errors.empty());
+  EXPECT_FALSE(
+      folder
+          .load("grading: CM0\nengine: impulse\nmaterial: {mu: 0.3, mu_r: 0.4, effective_modulus_pa: 1e7}\n"
+                "experiment: {type: end_dump}\n")
+          .errors.empty());
   EXPECT_TRUE(
       folder.load(head + "numerics: {impulse_iterations: 50, impulse_friction: 0.9, impulse_rolling: 0.8}\n")
           .errors.empty());
