@@ -1,18 +1,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <stdexcept>
 
 #include "analysis/csv_table.h"
 #include "analysis/outputs.h"
 #include "analysis/reproduction.h"
+#include "analysis/welch.h"
 
 namespace scree {
 namespace {
-
-constexpr double kSignificant = 0.05;
 
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -51,19 +49,15 @@ TrendComparison compared(const Trend& trend, const MeanStd& a, const MeanStd& b)
   TrendComparison result{trend};
   result.difference = result.low = result.high = result.p = std::nan("");
   const double scale = trend.relative ? std::abs(b.mean) : 1;
-  if (a.n < 2 || b.n < 2 || !(scale > 0)) return result;
-  const double va = a.std * a.std / a.n, vb = b.std * b.std / b.n, error = std::sqrt(va + vb);
-  if (!(error > 0)) return result;
-  // Welch, Biometrika 34 (1947) 28: degrees of freedom of two samples of unequal variance.
-  const double freedom = (va + vb) * (va + vb) / (va * va / (a.n - 1) + vb * vb / (b.n - 1));
-  const boost::math::students_t distribution(freedom);
+  const Welch test = welch(a, b);
+  if (!test.known || !(scale > 0)) return result;
   // Of a relative difference the scale scatters, too: var(a / b) = va / b^2 + a^2 vb / b^4.
+  const double va = a.std * a.std / a.n, vb = b.std * b.std / b.n;
   const double spread =
-      trend.relative ? std::sqrt(va + a.mean * a.mean * vb / (b.mean * b.mean)) / scale : error;
-  const double wide = boost::math::quantile(distribution, 0.975) * spread;
-  result.difference = (a.mean - b.mean) / scale;
-  result.low = result.difference - wide, result.high = result.difference + wide;
-  result.p = 2 * boost::math::cdf(boost::math::complement(distribution, std::abs(a.mean - b.mean) / error));
+      trend.relative ? std::sqrt(va + a.mean * a.mean * vb / (b.mean * b.mean)) / scale : test.error;
+  result.difference = test.difference / scale;
+  result.low = result.difference - test.t_95 * spread, result.high = result.difference + test.t_95 * spread;
+  result.p = test.p;
   result.verdict = judged(result);
   return result;
 }
