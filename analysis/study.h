@@ -36,19 +36,22 @@ struct StudyRank {
   std::size_t option = 0;  ///< its index
   int rank = 1;            ///< options with the same rank are a tie
   MeanStd value;
-  double p = 1;            ///< two-sided, against the best of its rank (Welch); 1 for that one itself
+  double p = 1;  ///< two-sided, against the best of its rank (Welch); 1 for that one itself
 };
 
-/// Options by rising mean of the criterion; those without a value are left out. An option whose difference to the
-/// best of the present rank is within the scatter of seeds (p >= 0.05, or fewer than two seeds) shares its rank.
+/// Options by rising mean of the criterion; those without a value are left out. An option whose difference to
+/// the best of the present rank is within the scatter of seeds (p >= 0.05, or fewer than two seeds) shares
+/// its rank.
 std::vector<StudyRank> rank_options(const std::vector<StudyOption>& options, const StudyCriterion& criterion);
 
 /// The answer in words, a line each.
-std::vector<std::string> study_in_words(const std::vector<StudyOption>& options, const StudyCriterion& criterion);
+std::vector<std::string> study_in_words(const std::vector<StudyOption>& options,
+                                        const StudyCriterion& criterion);
 
 /// Writes folder/report.html. Throws std::runtime_error when gnuplot is missing or fails or a file cannot be
 /// written.
-void write_study(const std::string& title, const std::vector<StudyOption>& options,
-                 const StudyCriterion& criterion, const std::filesystem::path& folder);
+void write_study(const std::string& title, const std::string& currency,
+                 const std::vector<StudyOption>& options, const StudyCriterion& criterion,
+                 const std::filesystem::path& folder);
 
 }  // namespace scree

@@ -60,6 +60,17 @@ struct ReproduceOptions {
   std::filesystem::path csv;       ///< export to this file
 };
 
+struct StudyOptions {
+  std::filesystem::path file;
+  std::string rank_by;          ///< a criterion; empty: that of the file
+  std::filesystem::path store;  ///< empty: runs/store.sqlite
+  std::filesystem::path out;    ///< empty: a free runs/NAME
+  int jobs = 0;                 ///< runs side by side; 0: as many as cores
+  bool again = false;           ///< try runs that failed before again
+  bool list = false;            ///< report what is there, run nothing
+  bool force = false;           ///< write into a folder that is not empty
+};
+
 int run_run(const RunOptions& options);
 int run_compare(const std::filesystem::path& dir, const std::vector<std::string>& cases);
 int run_validate(const std::filesystem::path& file, const std::vector<std::string>& overrides);
@@ -68,6 +79,7 @@ int run_calibrate(const CalibrateOptions& options);
 int run_predict(const PredictOptions& options);
 int run_sweep(const SweepOptions& options);
 int run_reproduce(const ReproduceOptions& options);
+int run_study(const StudyOptions& options);
 
 /// The project's assets folder.
 std::filesystem::path asset_dir();

@@ -25,6 +25,7 @@ Examples:
   scree run scenarios/a1_10m.yaml --seeds 5 --set material.mu=0.5
   scree sweep scenarios/sweeps/repose_lab.yaml           the repose angle over 16 pairs of friction
   scree reproduce a1 b1 --seeds 2                        cases of the thesis beside what it prints
+  scree study scenarios/studies/disposal_qb.yaml         ways to dispose of a rock, ranked
   scree calibrate scenarios/calibrations/lab_angle.yaml  friction from a measured repose angle
   scree compare runs/canadian_malartic_10m               the comparison of a run, as a table
   scree validate scenarios/a1_10m.yaml                   check a file without running it
@@ -151,6 +152,19 @@ int main(int argc, char** argv) {
       "  scree reproduce --list\n"
       "\nAn interrupted reproduction goes on where it stopped when it is started again.\n");
 
+  StudyOptions study;
+  CLI::App* study_app = app.add_subcommand("study", "Hold disposal options against each other and rank them");
+  study_app->add_option("file", study.file, "Study file (YAML)")->required();
+  study_app->add_option("--rank-by", study.rank_by, "Criterion; default: that of the file");
+  study_app->add_option("--store", study.store, "Results store; default: runs/store.sqlite");
+  study_app->add_option("--out", study.out, "Folder for the report; default: a free runs/NAME");
+  study_app->add_option("--jobs", study.jobs, "Runs side by side; default: as many as cores")
+      ->check(CLI::Range(1, 1024));
+  study_app->add_flag("--again", study.again, "Try runs that failed before again");
+  study_app->add_flag("--list", study.list, "Report what the store has; run nothing");
+  study_app->add_flag("--force", study.force, "Write into --out even if it holds something");
+  study_app->footer("\nExample:\n  scree study scenarios/studies/disposal_qb.yaml\n");
+
   std::filesystem::path compare_dir;
   std::vector<std::string> compare_cases;
   CLI::App* compare_app = app.add_subcommand("compare", "Show a finished run beside the reference values");
@@ -173,11 +187,11 @@ int main(int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error);
     const bool names_one = argc > 1 && argv[1][0] != '-';
     if (names_one && app.get_subcommands().empty()) {
-      fmt::print(
-          stderr,
-          "scree: {}: no such subcommand; there are run, sweep, reproduce, calibrate, predict, compare, "
-          "validate and schema\n",
-          argv[1]);
+      fmt::print(stderr,
+                 "scree: {}: no such subcommand; there are run, sweep, reproduce, study, calibrate, predict, "
+                 "compare, "
+                 "validate and schema\n",
+                 argv[1]);
       return kBadInput;
     }
     fmt::print(stderr, "scree: {} (see scree --help)\n", error.what());
@@ -192,6 +206,7 @@ int main(int argc, char** argv) {
     if (*run_app) return run_run(run);
     if (*sweep_app) return run_sweep(sweep);
     if (*reproduce_app) return run_reproduce(reproduce);
+    if (*study_app) return run_study(study);
     if (*calibrate_app) return run_calibrate(calibrate);
     if (*predict_app) return run_predict(predict);
     if (*compare_app) return run_compare(compare_dir, compare_cases);

@@ -11,12 +11,15 @@ fs::path free_run_folder(const std::string& name) {
   return folder;
 }
 
+bool may_fill(const fs::path& folder, bool force) {
+  if (force || !fs::exists(folder) || (fs::is_directory(folder) && fs::is_empty(folder))) return true;
+  fmt::print(stderr, "{}: is there already; choose another --out, or --force to write into it\n",
+             folder.string());
+  return false;
+}
+
 bool prepare_folder(const fs::path& folder, bool force) {
-  if (!force && fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder))) {
-    fmt::print(stderr, "{}: is there already; choose another --out, or --force to write into it\n",
-               folder.string());
-    return false;
-  }
+  if (!may_fill(folder, force)) return false;
   std::error_code error;
   fs::create_directories(folder, error);
   if (!error && access(folder.c_str(), W_OK) == 0) return true;

@@ -6,5 +6,8 @@
 /// runs/NAME, or the first of runs/NAME-2, ... that is not there.
 std::filesystem::path free_run_folder(const std::string& name);
 
+/// Whether the folder is not there or empty, or may be written into all the same; a message if not.
+bool may_fill(const std::filesystem::path& folder, bool force);
+
 /// Makes the folder. False, with a message, if it holds something (unless forced) or cannot be written.
 bool prepare_folder(const std::filesystem::path& folder, bool force);

@@ -45,23 +45,17 @@ std::vector<scree::CaseResult> results_of(const std::vector<scree::PointResults>
     scree::CaseResult result;
     result.name = point.point->values.front();
     result.title = scenario.title;
-    for (const auto& run : point.runs) {
-      if (!run || run->state == scree::RunState::running) {
-        ++result.missing;
-      } else if (run->state == scree::RunState::failed) {
-        ++result.failed;
-      } else if (!run->at_rest()) {
-        ++result.restless;
-      } else {
-        result.seeds.push_back(run->outputs);
-        result.wall_seconds += run->wall_seconds;
-        const auto number = [&](const char* name) {
-          const auto found = run->outputs.find(name);
-          return found == run->outputs.end() ? 0.0 : found->second;
-        };
-        result.largest_overlap = std::max(result.largest_overlap, number("largest_overlap_ratio"));
-        result.lost_mass += number("lost_mass_t");
-      }
+    scree::FinishedRuns runs = scree::finished(point);
+    result.seeds = std::move(runs.seeds);
+    result.failed = runs.failed, result.missing = runs.missing, result.restless = runs.restless;
+    result.wall_seconds = runs.wall_seconds;
+    for (const scree::Outputs& seed : result.seeds) {
+      const auto number = [&](const char* name) {
+        const auto found = seed.find(name);
+        return found == seed.end() ? 0.0 : found->second;
+      };
+      result.largest_overlap = std::max(result.largest_overlap, number("largest_overlap_ratio"));
+      result.lost_mass += number("lost_mass_t");
     }
     result.comparison = scree::compare_with_reference(result.seeds, reference, scenario.compare);
     cases.push_back(std::move(result));
@@ -78,11 +72,8 @@ int run_reproduce(const ReproduceOptions& options) {
   for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
   if (!loaded.errors.empty()) return kBadInput;
   const scree::Sweep& sweep = loaded.sweep;
-  if (!options.out.empty() && !options.force && fs::exists(options.out) && !fs::is_empty(options.out)) {
-    fmt::print(stderr, "{} holds something already; choose another --out, or --force\n",
-               options.out.string());
-    return kBadInput;
-  }
+  if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
+
   std::vector<scree::PointResults> points;
   scree::EnsembleProgress progress;
   if (!options.from.empty()) {

@@ -95,6 +95,23 @@ std::vector<PointResults> look_up(const Sweep& sweep, const std::vector<RunReque
   return points;
 }
 
+FinishedRuns finished(const PointResults& point) {
+  FinishedRuns result;
+  for (const auto& run : point.runs) {
+    if (!run || run->state == RunState::running) {
+      ++result.missing;
+    } else if (run->state == RunState::failed) {
+      ++result.failed;
+    } else if (!run->at_rest()) {
+      ++result.restless;
+    } else {
+      result.seeds.push_back(run->outputs);
+      result.wall_seconds += run->wall_seconds;
+    }
+  }
+  return result;
+}
+
 MeanStd PointResults::of(const std::string& output) const {
   std::vector<double> values;
   for (const auto& run : runs)

@@ -25,6 +25,15 @@ struct PointResults {
   int count(RunState state) const;
 };
 
+/// The runs of a point that can be used, and how many cannot.
+struct FinishedRuns {
+  std::vector<Outputs> seeds;  ///< of the runs that are done and came to rest
+  int failed = 0, missing = 0;
+  int restless = 0;         ///< done, but a load still moved at its time limit
+  double wall_seconds = 0;  ///< of those that can be used
+};
+FinishedRuns finished(const PointResults& point);
+
 /// What a store has of the runs; `requests` as requests_of gives them.
 std::vector<PointResults> look_up(const Sweep& sweep, const std::vector<RunRequest>& requests,
                                   const ResultsStore& store);
