@@ -189,8 +189,7 @@ int main(int argc, char** argv) {
     if (names_one && app.get_subcommands().empty()) {
       fmt::print(stderr,
                  "scree: {}: no such subcommand; there are run, sweep, reproduce, study, calibrate, predict, "
-                 "compare, "
-                 "validate and schema\n",
+                 "compare, validate and schema\n",
                  argv[1]);
       return kBadInput;
     }
