@@ -11,15 +11,18 @@ int run_validate(const std::filesystem::path& file, const std::vector<std::strin
   if (!result.errors.empty()) return kBadInput;
 
   const scree::Scenario& scenario = result.scenario;
-  const scree::Grading grading = scree::read_grading(scenario.grading_file);
+  const scree::Grading grading = scree::effective_model(scenario).grading;
   const double mass = scree::total_mass(scenario);
   const bool one_rock = std::holds_alternative<scree::DropTest>(scenario.experiment);
   std::string seeds;
   for (const auto seed : scenario.seeds) seeds += (seeds.empty() ? "" : ", ") + std::to_string(seed);
-  fmt::print("{}: ok: {}, engine {}, grading {}, {:g} t, about {:.0f} spheres, seeds {}\n", file.string(),
+  std::string effects;
+  for (const scree::EffectUse& use : scenario.effects)
+    effects += fmt::format("{}{}", effects.empty() ? ", effects " : ", ", use.effect->name);
+  fmt::print("{}: ok: {}, engine {}, grading {}, {:g} t, about {:.0f} spheres, seeds {}{}\n", file.string(),
              scree::experiment_type(scenario),
              scenario.engine == scree::EngineKind::rrlinear ? "rrlinear" : "impulse", grading.name(),
              mass / 1000, one_rock ? 1.0 : scree::estimated_spheres(grading, mass, scenario.material.density),
-             seeds);
+             seeds, effects);
   return 0;
 }

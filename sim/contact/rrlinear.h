@@ -7,6 +7,10 @@
 //   normal   Fn = kn u                                          no tension
 //   shear    Fs <- rotated Fs + ks (tangential displacement of 2 against 1), |Fs| <= mu Fn
 //   rolling  Mr <- rotated Mr + kr (rotation of 2 against 1 in the contact plane), |Mr| <= mu_r Rbar Fn
+// and, with effects (contact_effects.h) alone,
+//   twisting Mt <- Mt + kr (rotation of 2 against 1 about the normal), |Mt| <= mu_t Rbar Fn
+//   pull     2 pi gamma Rbar against Fn; limits stay those of the spring's Fn, as they must for a contact
+//            that sticks to be as hard to shear as one that is pressed together
 //   kn = pi r^2 E / L, ks = kn / k*, kr = ks Rbar^2
 //   ball-ball:  r = min(R1, R2), L = R1 + R2, 1/Rbar = 1/R1 + 1/R2
 //   ball-facet: r = R1,          L = R1,      Rbar = R1
@@ -16,26 +20,36 @@
 #include <numbers>
 #include <type_traits>
 
+#include "sim/contact/contact_effects.h"
 #include "sim/contact/lanes.h"
 #include "sim/material/material.h"
 #include "sim/material/vector.h"
 
 namespace scree {
 
-/// What of the material a contact needs, prepared once.
+/// What of material and effects a contact needs, prepared once.
 struct ContactLaw {
   double modulus_pi;               ///< pi E, Pa
   double inverse_stiffness_ratio;  ///< 1 / k*
   double mu, mu_r;
   double beta_n, beta_s;
+  double mu_t;                        ///< twisting resistance
+  double pull;                        ///< 2 pi gamma: pull of a contact over its Rbar, N/m
+  double weakening, weakening_speed;  ///< of mu with the speed of slip (m/s)
 
-  explicit ContactLaw(const Material& m)
+  explicit ContactLaw(const Material& m, const ContactEffects& effects = {})
       : modulus_pi(std::numbers::pi * m.effective_modulus),
         inverse_stiffness_ratio(1.0 / m.stiffness_ratio),
         mu(m.mu),
         mu_r(m.mu_r),
         beta_n(m.normal_damping_ratio),
-        beta_s(m.shear_damping_ratio) {}
+        beta_s(m.shear_damping_ratio),
+        mu_t(effects.mu_t),
+        pull(pull_of(effects.surface_energy)),
+        weakening(effects.weakening),
+        weakening_speed(effects.weakening_speed) {}
+
+  static double pull_of(double surface_energy) { return 2 * std::numbers::pi * surface_energy; }
 };
 
 /// Stiffnesses of one contact, or of four side by side.
@@ -64,6 +78,7 @@ inline ContactStiffness ball_facet(const ContactLaw& law, double r1) {
 struct ContactHistory {
   Vec3 shear = Vec3::Zero();    ///< N
   Vec3 rolling = Vec3::Zero();  ///< N m
+  double twisting = 0;          ///< N m about the normal; effects alone
 };
 
 /// How the two pieces move against each other over one step.
@@ -136,6 +151,18 @@ SCREE_INLINE Real shear_dashpot(const ContactLaw& law, const BasicContactStiffne
   return 2.0 * law.beta_s * root(reduced_mass * k.ks);
 }
 
+/// Sliding friction at a speed of slip (m/s).
+template <class Real>
+SCREE_INLINE Real weakened(const ContactLaw& law, Real mu, Real speed) {
+  return mu * (1.0 - law.weakening * speed / (speed + law.weakening_speed));
+}
+
+/// One step of a twisting moment, cut off at the limit.
+template <class Real>
+SCREE_INLINE Real twisted_on(Real moment, Real added, Real limit) {
+  return larger(smaller(moment + added, limit), -limit);
+}
+
 /// One step of the law; updates the history.
 inline ContactForce contact_step(const ContactLaw& law, const ContactStiffness& k, const ContactMotion& c,
                                  ContactHistory& history) {
@@ -144,14 +171,20 @@ inline ContactForce contact_step(const ContactLaw& law, const ContactStiffness& 
   const Vec3 slip = c.velocity - n * opening, bend = c.spin - n * c.spin.dot(n);
   const double fn = normal_force(law, k, c.overlap, c.reduced_mass, opening);
 
+  const double mu = law.weakening == 0 ? law.mu : weakened(law, law.mu, slip.norm());
   bool slides, rolls;
-  history.shear = carried_on<Vec3>(history.shear, n, angle, slip * (k.ks * c.dt), law.mu * fn, slides);
+  history.shear = carried_on<Vec3>(history.shear, n, angle, slip * (k.ks * c.dt), mu * fn, slides);
   history.rolling =
       carried_on<Vec3>(history.rolling, n, angle, bend * (k.kr * c.dt), law.mu_r * k.rbar * fn, rolls);
 
   Vec3 shear = history.shear;
   if (law.beta_s > 0.0 && !slides) shear += slip * shear_dashpot(law, k, c.reduced_mass);
-  return {shear - n * fn, history.rolling};
+  Vec3 moment = history.rolling;
+  if (law.mu_t > 0) {
+    history.twisting = twisted_on(history.twisting, k.kr * c.dt * c.spin.dot(n), law.mu_t * k.rbar * fn);
+    moment += history.twisting * n;
+  }
+  return {shear - n * (fn - law.pull * k.rbar), moment};
 }
 
 // The same for four contacts side by side. Overlap, the spring's normal force and the sums stay in double
@@ -172,7 +205,19 @@ struct LaneContactMotion {
 /// Shear forces and rolling moments of four contacts.
 using LaneContactHistory = LaneVector<TwinFloats>;
 
-SCREE_INLINE BasicContactForce<Lanes> contact_step(const ContactLaw& law,
+/// Friction of four contacts under the plain law, and with what effects make of it.
+struct PlainFriction {
+  static constexpr bool kEffects = false;
+  double mu, mu_r;
+};
+struct EffectFriction {
+  static constexpr bool kEffects = true;
+  Lanes mu, mu_r;
+  LaneFloats twisting;  ///< the moments that are remembered, N m; updated
+};
+
+template <class Friction>
+SCREE_INLINE BasicContactForce<Lanes> contact_step(const ContactLaw& law, Friction& friction,
                                                    const BasicContactStiffness<Lanes>& k,
                                                    const LaneContactMotion& c, LaneContactHistory& history) {
   const LaneVector<LaneFloats>& n = c.rounded_normal;
@@ -182,8 +227,11 @@ SCREE_INLINE BasicContactForce<Lanes> contact_step(const ContactLaw& law,
   const LaneVector<TwinFloats> slip_and_bend = c.velocity_and_spin - nn * along;
   const Lanes fn = normal_force(law, k, c.overlap, c.reduced_mass, wide(first_half(along)));
 
+  auto mu = friction.mu;
+  if constexpr (Friction::kEffects)
+    mu = weakened(law, mu, wide(first_half(root(slip_and_bend.squaredNorm()))));
   const TwinFloats stiffness = twin(narrow(k.ks * c.dt), narrow(k.kr * c.dt)),
-                   limit = twin(narrow(law.mu * fn), narrow(law.mu_r * k.rbar * fn));
+                   limit = twin(narrow(mu * fn), narrow(friction.mu_r * k.rbar * fn));
   TwinMask slips;
   history = carried_on(history, nn, twin(angle, angle), slip_and_bend * stiffness, limit, slips);
 
@@ -192,13 +240,20 @@ SCREE_INLINE BasicContactForce<Lanes> contact_step(const ContactLaw& law,
     const Lanes sticks = wide(first_half(pick(slips, TwinFloats{}, TwinFloats{} + 1)));
     shear = shear + wide_first(slip_and_bend) * (sticks * shear_dashpot(law, k, c.reduced_mass));
   }
-  return {shear - c.normal * fn, wide_second(history)};
+  if constexpr (Friction::kEffects) {
+    friction.twisting = narrow(
+        twisted_on(wide(friction.twisting), k.kr * c.dt * wide(second_half(along)), law.mu_t * k.rbar * fn));
+    const LaneVec3 moment = wide_second(history) + c.normal * wide(friction.twisting);
+    return {shear - c.normal * (fn - law.pull * k.rbar), moment};
+  } else {
+    return {shear - c.normal * fn, wide_second(history)};
+  }
 }
 
-/// Elastic energy held by a contact (J).
+/// Elastic energy held by the springs of a contact (J).
 inline double elastic_energy(const ContactStiffness& k, double overlap, const ContactHistory& h) {
   return 0.5 * k.kn * overlap * overlap + 0.5 * h.shear.squaredNorm() / k.ks +
-         0.5 * h.rolling.squaredNorm() / k.kr;
+         0.5 * (h.rolling.squaredNorm() + h.twisting * h.twisting) / k.kr;
 }
 
 /// Local (non-viscous) damping of one component: the generalised force f becomes f - alpha |f| sign(v).

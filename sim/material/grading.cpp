@@ -110,6 +110,15 @@ Grading Grading::scalped(double low, double high) const {
   return Grading(name_, std::move(points));
 }
 
+Grading Grading::with_fines(double share, double ratio) const {
+  if (!(share > 0 && share < 1 && ratio > 1))
+    throw std::invalid_argument(
+        fmt::format("fines: share {} must be between 0 and 1, ratio {} above 1", share, ratio));
+  std::vector<Point> points{{min_diameter() / ratio, 0}};
+  for (const Point& point : points_) points.push_back({point.diameter, share + (1 - share) * point.passing});
+  return Grading(name_, std::move(points));
+}
+
 Grading read_grading(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream) throw std::runtime_error(fmt::format("{}: cannot be opened", file.string()));

@@ -32,6 +32,9 @@ class Grading {
   const std::string& name() const { return name_; }
   const std::vector<Point>& points() const { return points_; }
 
+  /// The same curve with a `share` of the mass added below its smallest diameter, down to that over `ratio`,
+  /// evenly in log d.
+  Grading with_fines(double share, double ratio) const;
   /// The same curve without what lies outside [low, high] (m), rescaled to 0..1.
   Grading scalped(double low, double high) const;
 

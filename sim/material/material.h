@@ -1,5 +1,7 @@
 #pragma once
 // Material parameters of the contact law, and those of a surface that rock touches.
+#include <cmath>
+#include <numbers>
 
 namespace scree {
 
@@ -10,6 +12,8 @@ enum class DampingReach { always, contacts };
 /// Parameters of the rolling resistance linear ("rrlinear") law. Defaults: thesis, Table 5.1.
 struct Material {
   double density = 2760.0;           ///< Density of the solid rock, kg/m3.
+  double density_exponent = 0;       ///< Density is times (d / density_diameter)^this; effects alone.
+  double density_diameter = 1;       ///< m.
   double mu = 0.44;                  ///< Sliding friction coefficient, -.
   double mu_r = 0.44;                ///< Rolling resistance coefficient, -.
   double effective_modulus = 1.0e6;  ///< Effective modulus E of the contacts, Pa.
@@ -20,10 +24,18 @@ struct Material {
   double shear_damping_ratio = 0.0;   ///< beta_s, the same of the shear dashpot, -.
 };
 
+/// Mass of a sphere of rock (kg) of this diameter (m).
+inline double sphere_mass(const Material& rock, double diameter) {
+  const double mass = rock.density * std::numbers::pi / 6.0 * std::pow(diameter, 3);
+  if (rock.density_exponent == 0) return mass;
+  return mass * std::pow(diameter / rock.density_diameter, rock.density_exponent);
+}
+
 /// Friction of a surface (truck bed, bench, bucket) against rock; it replaces the rock's own in that contact.
 struct Surface {
-  double mu = 0.44;    ///< Sliding friction coefficient, -.
-  double mu_r = 0.44;  ///< Rolling resistance coefficient, -.
+  double mu = 0.44;           ///< Sliding friction coefficient, -.
+  double mu_r = 0.44;         ///< Rolling resistance coefficient, -.
+  double surface_energy = 0;  ///< Contacts with it pull with 2 pi times this times the radius, J/m2.
 };
 
 }  // namespace scree

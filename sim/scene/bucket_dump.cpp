@@ -45,12 +45,12 @@ RunOutcome run_bucket_dump(const Scenario& scenario, const BucketDump& e, std::u
       throw std::invalid_argument(
           fmt::format("{} kg need a bucket {:.2f} m high, it is {} m", e.mass, height, e.height));
   stage.begin({}, loads.spheres);
-  const Surface ground = stage.surface(e.floor_mu, e.floor_mu_r);
+  const Surface ground = stage.ground_surface(e.floor_mu, e.floor_mu_r);
   world.add_mesh(make_box({-back, -r, -0.2 * r}, {r, r, 0}), ground, Motion());
   world.add_mesh(make_box({-back, -r, 0}, {0, r, e.wall_height}), ground, Motion());
   stage.add_tools();
 
-  const Surface surface = stage.surface(e.container_mu, e.container_mu_r);
+  const Surface surface = stage.tool_surface(e.container_mu, e.container_mu_r);
   const TriangleMesh bucket_mesh = stage.read(e.container_mesh, e.scale);
   for (int dump = 1; dump <= e.buckets; ++dump) {
     const double share = static_cast<double>(dump - 1) / e.buckets, part = 1.0 / e.buckets;

@@ -19,7 +19,7 @@ RunOutcome run_drop_test(const Scenario& scenario, const DropTest& e, std::uint6
               {wide, wide, 2 * (e.height + e.diameter)});
   RockWorld& world = stage.world();
   stage.begin({}, {{{Vec3(0, 0, e.height + radius), e.diameter, 1}}});
-  world.add_mesh(make_box({-wide, -wide, -wide}, {wide, wide, 0}), stage.surface({}, {}), Motion());
+  world.add_mesh(make_box({-wide, -wide, -wide}, {wide, wide, 0}), stage.ground_surface(), Motion());
   stage.add_tools();
   stage.set_dump(1, 1);
   stage.add_load();

@@ -6,7 +6,7 @@ namespace scree {
 
 DumpLoads make_dump_loads(const Scenario& scenario, double payload, const std::vector<Pose>& poses,
                           const LoadRegion& region, std::uint64_t seed) {
-  const Grading grading = read_grading(scenario.grading_file);
+  const Grading grading = effective_model(scenario).grading;
   DumpLoads loads;
   int dump = 0;
   for (const Pose& here : poses) {

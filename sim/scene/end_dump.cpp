@@ -61,12 +61,12 @@ RunOutcome run_end_dump(const Scenario& scenario, const EndDump& e, std::uint64_
     poses.push_back(truck_pose(e, e.points[k % e.points.size()], start_tilt));
   const DumpLoads loads = make_dump_loads(scenario, e.payload, poses, {e.truck.load_box}, seed);
   stage.begin(make_base_layer(e.bench, seed), loads.spheres);
-  world.add_mesh(make_bench(e.bench), stage.surface({}, {}), Motion());
+  world.add_mesh(make_bench(e.bench), stage.ground_surface(), Motion());
   stage.add_tools();
 
   const TriangleMesh bed_mesh = stage.read(e.truck.bed_mesh, e.truck.scale);
   const TriangleMesh gate_mesh = stage.read(e.truck.gate_mesh, e.truck.scale);
-  const Surface surface = stage.surface(e.truck.mu, e.truck.mu_r);
+  const Surface surface = stage.tool_surface(e.truck.mu, e.truck.mu_r);
   for (int dump = 1; dump <= e.dumps; ++dump) {
     const Pose& pose = poses[static_cast<std::size_t>(dump - 1)];
     const double y = pose.position.y();
@@ -86,6 +86,8 @@ RunOutcome run_end_dump(const Scenario& scenario, const EndDump& e, std::uint64_
     double emptied = share + 0.1 * part;
     if (e.truck.release == Release::open_gate) {
       world.remove_mesh(gate);
+      if (const double speed = stage.changes().release_speed; speed > 0)
+        stage.push_load(pose.rotation * Vec3(speed, 0, 0));
     } else {
       const double start = world.time(), seconds = e.truck.tilt_deg / e.truck.hoist_rate_deg;
       world.set_mesh_motion(bed,

@@ -46,7 +46,7 @@ class Pushing {
         e_(e),
         ground_(standing_height(e.bench)),
         mesh_(stage.read(e.blade.mesh, e.blade.scale)),
-        surface_(stage.surface(e.blade.mu, e.blade.mu_r)) {}
+        surface_(stage.tool_surface(e.blade.mu, e.blade.mu_r)) {}
 
   // Of these three, each false when the user ended the run.
 
@@ -157,7 +157,7 @@ RunOutcome run_push_dump(const Scenario& scenario, const PushDump& e, std::uint6
   }
   const DumpLoads loads = make_dump_loads(scenario, e.payload, boxes, {e.load_box}, seed);
   stage.begin(make_base_layer(e.bench, seed), loads.spheres);
-  stage.world().add_mesh(make_bench(e.bench), stage.surface({}, {}), Motion());
+  stage.world().add_mesh(make_bench(e.bench), stage.ground_surface(), Motion());
   stage.add_tools();
 
   Pushing pushing(stage, e);

@@ -12,7 +12,7 @@ RunOutcome run_repose_lift(const Scenario& scenario, const ReposeLift& e, std::u
                            const RunHooks& hooks) {
   const double r = e.floor_radius;
   const std::vector<double> diameters =
-      generate_diameters(read_grading(scenario.grading_file), e.mass, scenario.material.density, seed, 1);
+      generate_diameters(effective_model(scenario).grading, e.mass, scenario.material.density, seed, 1);
   const double floor = ball_radius(e.base_layer);  // the container stands on the balls
   const Load load = fill_region({{e.diameter, 0, e.height}}, diameters, seed, 1);
   const double lift = e.height + 2.0 * diameters.front();
@@ -24,10 +24,11 @@ RunOutcome run_repose_lift(const Scenario& scenario, const ReposeLift& e, std::u
   for (std::size_t k = 0; k < diameters.size(); ++k)
     spheres.push_back({load.positions[k] + Vec3(0, 0, floor), diameters[k], 1});
   stage.begin(make_floor_layer(r, e.base_layer, seed), {spheres});
-  world.add_mesh(make_box({-r, -r, -0.2 * r}, {r, r, 0}), stage.surface(e.floor_mu, e.floor_mu_r), Motion());
+  world.add_mesh(make_box({-r, -r, -0.2 * r}, {r, r, 0}), stage.ground_surface(e.floor_mu, e.floor_mu_r),
+                 Motion());
   stage.add_tools();
 
-  const Surface wall = stage.surface(e.container_mu, e.container_mu_r);
+  const Surface wall = stage.tool_surface(e.container_mu, e.container_mu_r);
   Pose rest;
   rest.position = {0, 0, floor};
   const int container = world.add_mesh(stage.read(e.container_mesh, e.scale), wall, Motion::fixed(rest));

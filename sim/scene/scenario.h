@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "sim/effects/effect.h"
 #include "sim/material/equivalence.h"
 #include "sim/material/grading.h"
 #include "sim/material/material.h"
@@ -177,17 +178,30 @@ struct Scenario {
   std::filesystem::path grading_file;
   std::variant<EndDump, ReposeLift, DropTest, PushDump, BucketDump> experiment;
   std::vector<ToolSpec> tools;
+  std::vector<EffectUse> effects;  ///< in the order of all_effects()
   StopRule stop;
   Numerics numerics;
   OutputSpec output;
   std::vector<std::string> compare;  ///< names of reference cases in assets/reference/results.csv
   /// engine impulse: what Bullet gets for material.mu and material.mu_r.
   std::optional<Equivalence::Settings> bullet;
+  /// The use of an effect; null where it is not used.
+  EffectUse* effect(const Effect& wanted);
+  const EffectUse* effect(const Effect& wanted) const;
   std::string resolved_yaml;  ///< the whole scenario with every default filled in
 };
 
 /// Name of the experiment's type in a file: end_dump, repose_lift, drop_test, push_dump, bucket_dump.
 std::string_view experiment_type(const Scenario& scenario);
+
+/// What the scenario's effects change; grading and rock with them.
+struct EffectiveModel {
+  Modifications changes;
+  Grading grading;
+  Material material;
+};
+/// Throws as read_grading does.
+EffectiveModel effective_model(const Scenario& scenario);
 
 /// The bench of an experiment that has one; null otherwise.
 const BenchSpec* bench_of(const Scenario& scenario);

@@ -33,6 +33,7 @@ class Checks {
     if (const auto* lift = std::get_if<ReposeLift>(&s_.experiment)) repose_lift(*lift);
     if (const auto* buckets = std::get_if<BucketDump>(&s_.experiment)) bucket_dump(*buckets);
     tools();
+    effects();
     if (notes_.good({&s_.stop.min_time, &s_.stop.max_time}) && s_.stop.min_time > s_.stop.max_time)
       fail(&s_.stop.min_time, fmt::format("stop.min_time_s: {} is more than stop.max_time_s ({})",
                                           s_.stop.min_time, s_.stop.max_time));
@@ -60,7 +61,7 @@ class Checks {
   void read_the_grading() {
     if (!notes_.good({&s_.grading_file})) return;
     try {
-      grading_ = read_grading(s_.grading_file);
+      grading_ = effective_model(s_).grading;
     } catch (const std::exception& error) {
       fail(&s_.grading_file, std::string("grading: ") + error.what());
     }
@@ -77,6 +78,17 @@ class Checks {
                "{}: about {:.1f} million spheres ({} of {}), more than the {:.0f} million allowed; {}, or "
                "take a grading without its finest part",
                path, count / 1e6, load, grading_->name(), kMaxSpheres / 1e6, cure));
+  }
+
+  void effects() {
+    if (!s_.effects.empty() && s_.engine == EngineKind::impulse)
+      fail(&s_.effects.front().values.front(), "effects: engine impulse has none; take engine rrlinear");
+    for (const EffectUse& use : s_.effects) {
+      const auto& acts_in = use.effect->experiments;
+      if (!acts_in.empty() && std::find(acts_in.begin(), acts_in.end(), experiment_type(s_)) == acts_in.end())
+        warnings_.push_back(fmt::format("effects.{}: changes nothing in an experiment of type {}",
+                                        use.effect->name, experiment_type(s_)));
+    }
   }
 
   // Piles that are asked for but never there.

@@ -275,6 +275,40 @@ Fields keys(OutputSpec& o) {
   };
 }
 
+Optionals effects(Scenario& s) {
+  Optionals all;
+  for (const Effect& effect : all_effects()) {
+    all.names.push_back(effect.name);
+    all.docs.push_back(effect.doc);
+  }
+  all.there = [&s] {
+    std::vector<bool> there;
+    for (const Effect& effect : all_effects()) there.push_back(s.effect(effect) != nullptr);
+    return there;
+  };
+  all.select = [&s](const std::vector<bool>& there) {
+    s.effects.clear();
+    for (std::size_t k = 0; k < there.size(); ++k) {
+      if (!there[k]) continue;
+      EffectUse& use = s.effects.emplace_back(EffectUse{&all_effects()[k], {}});
+      for (const EffectParameter& parameter : use.effect->parameters)
+        use.values.push_back(parameter.standard);
+    }
+  };
+  all.fields = [&s](std::size_t k) {
+    EffectUse& use = *s.effect(all_effects()[k]);
+    Fields fields;
+    for (std::size_t p = 0; p < use.values.size(); ++p) {
+      const EffectParameter& parameter = use.effect->parameters[p];
+      fields.push_back({parameter.key,
+                        Number{&use.values[p], parameter.unit, {parameter.low, parameter.high}},
+                        parameter.doc});
+    }
+    return fields;
+  };
+  return all;
+}
+
 OneOf experiment(Scenario& s) {
   return {
       {std::begin(kExperiments), std::end(kExperiments)},
@@ -322,6 +356,9 @@ Fields scenario_keys(Scenario& s) {
                  [&s](std::size_t i) { return keys(s.tools[i]); },
                  {0, 50}},
        "Meshes in the scene, fixed or moved by keyframes."},
+      {"effects", effects(s),
+       "Physics that the base model lacks, each effect with its parameters (engine rrlinear); see "
+       "docs/effects.md."},
       {"stop", Group{[&s] { return keys(s.stop); }}, "When a load has come to rest."},
       {"numerics", Group{[&s] { return keys(s.numerics); }}, "Time steps and iterations."},
       {"output", Group{[&s] { return keys(s.output); }}, "What is written and analysed."},

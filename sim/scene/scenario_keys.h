@@ -112,11 +112,18 @@ struct OneOf {
   std::function<void(int)> select;  ///< sets all keys to the defaults of that type
   std::function<Fields()> fields;   ///< keys of the type that is set
 };
+/// Groups by name, each of which may be there or not. Those that are not are not written either.
+struct Optionals {
+  std::vector<std::string_view> names, docs;
+  std::function<std::vector<bool>()> there;
+  std::function<void(const std::vector<bool>&)> select;  ///< those that are there, with their defaults
+  std::function<Fields(std::size_t)> fields;             ///< of one that is there
+};
 /// `extends`: resolved before the table is used, kept here for the list of keys and the schema.
 struct Extends {};
 
 using Target = std::variant<Number, NumberOr, Integer, Boolean, Text, Choice, MeshFile, GradingFile, Vector,
-                            Numbers, Integers, Seeds, Texts, Group, GroupList, OneOf, Extends>;
+                            Numbers, Integers, Seeds, Texts, Group, GroupList, OneOf, Optionals, Extends>;
 
 struct Field {
   std::string_view name;

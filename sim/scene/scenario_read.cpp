@@ -86,6 +86,29 @@ class Reader {
     }
   }
 
+  void key(const Optionals& target, const Field&, const YamlEntry* entry, const Place& around,
+           const std::string& path) {
+    if (entry == nullptr) return;
+    const YamlNode map = as_map(entry, around, path);
+    const std::vector<std::string> allowed(target.names.begin(), target.names.end());
+    std::vector<bool> there(allowed.size());
+    for (const YamlEntry& group : map.entries) {
+      const auto at = std::find(allowed.begin(), allowed.end(), group.key);
+      if (at != allowed.end())
+        there[static_cast<std::size_t>(at - allowed.begin())] = true;
+      else
+        report(notes_.errors, group.key_place,
+               fmt::format("unknown key {} in {}{}; allowed: {}", shown(group.key), path,
+                           suggestion(group.key, allowed), join(allowed)));
+    }
+    target.select(there);
+    for (std::size_t k = 0; k < allowed.size(); ++k) {
+      if (!there[k]) continue;
+      const std::string inner = path + "." + allowed[k];
+      group(as_map(map.find(allowed[k]), map.place, inner), target.fields(k), inner + ".");
+    }
+  }
+
   void key(const OneOf& target, const Field&, const YamlEntry* entry, const Place& around,
            const std::string& path) {
     const YamlNode map = as_map(entry, around, path);

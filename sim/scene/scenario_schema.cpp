@@ -93,6 +93,17 @@ struct TargetSchema {
     t.resize(0);
     return list_of(std::move(item), t.count);
   }
+  Json operator()(const Optionals& t) const {
+    t.select(std::vector<bool>(t.names.size(), true));
+    Json properties = Json::object();
+    for (std::size_t k = 0; k < t.names.size(); ++k) {
+      Json& group = properties[std::string(t.names[k])];
+      group = schema(t.fields(k));
+      group["description"] = t.docs[k];
+    }
+    t.select(std::vector<bool>(t.names.size(), false));
+    return {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
+  }
   /// The keys of all types; those of the others are forbidden once the type is given. `extends` may give it.
   Json operator()(const OneOf& t) const {
     Json all = {{"type", "object"}, {"properties", Json::object()}, {"additionalProperties", false}};

@@ -125,6 +125,16 @@ class Writer {
       fields(t.fields(i), indent + 4);
     }
   }
+  void write(const Optionals& t, std::string_view name, int indent) {
+    const std::vector<bool> there = t.there();
+    if (std::find(there.begin(), there.end(), true) == there.end()) return;
+    line(indent, name, "");
+    for (std::size_t k = 0; k < there.size(); ++k) {
+      if (!there[k]) continue;
+      line(indent + 2, t.names[k], "");
+      fields(t.fields(k), indent + 4);
+    }
+  }
   void write(const OneOf& t, std::string_view name, int indent) {
     line(indent, name, "");
     line(indent + 2, "type", std::string(t.names[static_cast<std::size_t>(t.get())]));

@@ -20,13 +20,15 @@ constexpr double kTick = 0.1;  // s of simulated time between looks at progress 
 
 Stage::Stage(const Scenario& scenario, std::uint64_t seed, int threads, const RunHooks& hooks,
              const Vec3& domain_low, const Vec3& domain_high)
-    : scenario_(scenario), seed_(seed), hooks_(hooks) {
+    : scenario_(scenario), model_(effective_model(scenario)), seed_(seed), hooks_(hooks) {
   WorldSettings settings;
-  settings.material = scenario.material;
+  settings.material = model_.material;
+  settings.contact_effects = model_.changes.contact;
+  settings.flight_damping = model_.changes.flight_damping;
   if (scenario.engine == EngineKind::impulse) {
     settings.material.mu = scenario.bullet.value().friction;
     settings.material.mu_r = scenario.bullet.value().rolling;
-    settings.smallest_diameter = read_grading(scenario.grading_file).min_diameter();
+    settings.smallest_diameter = model_.grading.min_diameter();
     settings.impulse_time_step = scenario.numerics.impulse_step_ratio *
                                  std::sqrt(settings.smallest_diameter / settings.gravity.norm());
     settings.impulse_iterations = scenario.numerics.impulse_iterations;
@@ -52,6 +54,19 @@ Surface Stage::surface(const std::optional<double>& mu, const std::optional<doub
           bullets(mu_r, rock.mu_r, scenario_.bullet->rolling)};
 }
 
+Surface Stage::tool_surface(const std::optional<double>& mu, const std::optional<double>& mu_r) const {
+  Surface tool = surface(mu, mu_r);
+  tool.surface_energy = model_.changes.tool_surface_energy;
+  return tool;
+}
+
+Surface Stage::ground_surface(const std::optional<double>& mu, const std::optional<double>& mu_r) const {
+  Surface ground = surface(mu, mu_r);
+  ground.mu *= model_.changes.ground_mu;
+  ground.mu_r *= model_.changes.ground_mu_r;
+  return ground;
+}
+
 TriangleMesh Stage::read(const std::filesystem::path& mesh, double scale) const {
   LoadedMesh loaded = load_mesh(mesh, scale);
   if (!loaded.report.errors.empty()) throw std::runtime_error(loaded.report.errors.front());
@@ -69,7 +84,7 @@ void Stage::add_tools() {
                       Eigen::AngleAxisd(r.x(), Vec3::UnitX());
       keys.push_back({k.time, pose});
     }
-    world_->add_mesh(read(tool.mesh, tool.scale), surface(tool.mu, tool.mu_r), Motion(std::move(keys)));
+    world_->add_mesh(read(tool.mesh, tool.scale), tool_surface(tool.mu, tool.mu_r), Motion(std::move(keys)));
   }
 }
 
@@ -80,7 +95,7 @@ void Stage::begin(const std::vector<NewSphere>& fixed, const std::vector<std::ve
   auto id = static_cast<std::int64_t>(fixed.size());
   for (const auto& load : loads_)
     for (const NewSphere& s : load) {
-      const double mass = scenario_.material.density * std::numbers::pi / 6.0 * std::pow(s.diameter, 3);
+      const double mass = sphere_mass(model_.material, s.diameter);
       outcome_.original.push_back({id++, s.position, Vec3::Zero(), s.diameter, mass, s.dump});
     }
   if (hooks_.begin) hooks_.begin(outcome_.original, outcome_.fixed);
@@ -90,10 +105,16 @@ void Stage::add_load(double lift) {
   auto& load = loads_.at(next_load_++);
   for (NewSphere& s : load) s.position.z() += lift;
   load_mass_ = 0;
-  for (const NewSphere& s : load)
-    load_mass_ += scenario_.material.density * std::numbers::pi / 6.0 * std::pow(s.diameter, 3);
+  for (const NewSphere& s : load) load_mass_ += sphere_mass(model_.material, s.diameter);
   progress_.particles += static_cast<std::int64_t>(load.size());
   world_->add_spheres(load);
+}
+
+void Stage::push_load(const Vec3& velocity) {
+  std::size_t first = outcome_.fixed.size();
+  for (std::size_t k = 0; k + 1 < next_load_; ++k) first += loads_[k].size();
+  for (std::size_t k = 0; k < loads_.at(next_load_ - 1).size(); ++k)
+    world_->set_velocity(static_cast<std::int64_t>(first + k), velocity, Vec3::Zero());
 }
 
 bool Stage::tick(double until, const char* stage, double share) {

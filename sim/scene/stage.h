@@ -13,10 +13,14 @@ class Stage {
 
   RockWorld& world() { return *world_; }
   const Scenario& scenario() const { return scenario_; }
+  /// What the scenario's effects change.
+  const Modifications& changes() const { return model_.changes; }
   std::uint64_t seed() const { return seed_; }
 
-  /// Surface of a tool: its own friction where given, the rock's otherwise.
-  Surface surface(const std::optional<double>& mu, const std::optional<double>& mu_r) const;
+  /// Surface of a tool or of the ground: its own friction where given, the rock's otherwise, with what
+  /// effects make of it.
+  Surface tool_surface(const std::optional<double>& mu, const std::optional<double>& mu_r) const;
+  Surface ground_surface(const std::optional<double>& mu = {}, const std::optional<double>& mu_r = {}) const;
   /// Reads a mesh that the scenario check has passed already; throws std::runtime_error if it is bad now.
   TriangleMesh read(const std::filesystem::path& mesh, double scale) const;
   /// Puts the user's own tools into the scene.
@@ -27,6 +31,8 @@ class Stage {
   void begin(const std::vector<NewSphere>& fixed, const std::vector<std::vector<NewSphere>>& loads);
   /// Adds the next load, `lift` (m) above its place.
   void add_load(double lift = 0);
+  /// Gives the load added last a velocity (m/s).
+  void push_load(const Vec3& velocity);
   /// Something a reader of the result should know.
   void note(std::string text) { outcome_.notes.push_back(std::move(text)); }
 
@@ -43,8 +49,10 @@ class Stage {
 
  private:
   bool tick(double until, const char* stage, double share);
+  Surface surface(const std::optional<double>& mu, const std::optional<double>& mu_r) const;
 
   const Scenario& scenario_;
+  const EffectiveModel model_;
   std::uint64_t seed_;
   const RunHooks& hooks_;
   std::unique_ptr<RockWorld> world_;

@@ -27,11 +27,11 @@ namespace scree {
 /// far below what local damping leaves unbalanced (Rest tests), and half of the memory traffic of a step is
 /// saved.
 struct alignas(32) ContactMemory {
-  float shear[4] = {0, 0, 0, 0};    ///< N; the last is not used
+  float shear[4] = {0, 0, 0, 0};    ///< N; the last: moment about the normal, N m (effects alone)
   float rolling[4] = {0, 0, 0, 0};  ///< N m; the last is not used
 
   ContactHistory history() const {
-    return {{shear[0], shear[1], shear[2]}, {rolling[0], rolling[1], rolling[2]}};
+    return {{shear[0], shear[1], shear[2]}, {rolling[0], rolling[1], rolling[2]}, shear[3]};
   }
 };
 

@@ -37,7 +37,7 @@ RockWorld::~RockWorld() {
 void RockWorld::add_spheres(const std::vector<NewSphere>& spheres) {
   for (const NewSphere& s : spheres) {
     const double radius = 0.5 * s.diameter;
-    const double mass = settings_.material.density * M_PI / 6.0 * std::pow(s.diameter, 3);
+    const double mass = sphere_mass(settings_.material, s.diameter);
     const std::int64_t id = spheres_.size();
     spheres_.place.push_back({s.position.x(), s.position.y(), s.position.z(), radius});
     spheres_.velocity.push_back({s.velocity.x(), s.velocity.y(), s.velocity.z(), mass});

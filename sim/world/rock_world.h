@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/contact/contact_effects.h"
 #include "sim/io/snapshot.h"
 #include "sim/material/material.h"
 #include "sim/world/energy_watch.h"
@@ -28,7 +29,9 @@ namespace scree {
 
 struct WorldSettings {
   Material material;
-  Vec3 gravity{0, 0, -9.81};                                                  ///< m/s2
+  ContactEffects contact_effects;  ///< rrlinear
+  double flight_damping = 1;       ///< share of local damping that acts in flight (rrlinear)
+  Vec3 gravity{0, 0, -9.81};       ///< m/s2
   Vec3 domain_low = Vec3::Constant(-1e6), domain_high = Vec3::Constant(1e6);  ///< m; a sphere outside is lost
   double time_step_safety = 0.8;   ///< share of the stable step (rrlinear)
   double fixed_time_step = 0;      ///< s; above 0 it is used instead (rrlinear; for tests)

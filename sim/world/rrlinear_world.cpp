@@ -24,7 +24,7 @@ constexpr double kLargestStep = 0.05;  // s; for scenes with nothing stiff in th
 
 RrlinearWorld::RrlinearWorld(const WorldSettings& settings)
     : RockWorld(settings),
-      law_(settings.material),
+      law_(settings.material, settings.contact_effects),
       team_(settings.threads),
       sleep_(settings.sleep, settings.wake_tolerance) {
   pairs_.set_team(&team_);
@@ -118,6 +118,11 @@ void RrlinearWorld::prepare() {
                                    std::sqrt(free_step2(radius, spheres_.velocity[i].w, spheres_.spin[i].w)));
   }
   sum_.assign(n, {});
+  friction_.clear();
+  if (!settings_.contact_effects.none()) {
+    for (int i = 0; i < spheres_.size(); ++i)
+      friction_.push_back(friction_factors(settings_.contact_effects, 2 * spheres_.place[i].w, i >= n));
+  }
 
   pairs_.rebuild(spheres_, order, horizon());
   // A sphere that touched a mesh which was taken away has lost its hold.
@@ -201,12 +206,14 @@ void RrlinearWorld::mesh_forces(BlockWork& work) {
     if (changes.without_slot > 0)
       __atomic_fetch_add(&statistics_.crowded_contacts, changes.without_slot, __ATOMIC_RELAXED);
     const Vec3 v = spheres_.velocity[i].vec(), w = spheres_.spin[i].vec();
+    const FrictionFactors own = friction_.empty() ? FrictionFactors() : friction_[i];
     int count = 0;
     for (MeshContact& c : contacts) {
       if (c.body < 0) break;
       const MeshBody& body = *meshes_[c.body];
-      law.mu = body.surface().mu;
-      law.mu_r = body.surface().mu_r;
+      law.mu = body.surface().mu * own.mu;
+      law.mu_r = body.surface().mu_r * own.mu_r;
+      law.pull = law_.pull + ContactLaw::pull_of(body.surface().surface_energy);
       const double arm = std::max(place.w - 0.5 * c.overlap, 0.1 * place.w);
       const Vec3 normal = -c.normal;  // from the sphere to the surface
       const Vec3 point = place.vec() + arm * normal;
@@ -240,7 +247,9 @@ void RrlinearWorld::mesh_forces(BlockWork& work) {
 
 void RrlinearWorld::forces() {
   if (blocks_due_) split_awake();
-  const StepView view{spheres_, pairs_, sleep_, law_, last_dt_, sum_.data(), several_threads()};
+  const StepView view{
+      spheres_, pairs_,      sleep_,           law_, friction_.empty() ? nullptr : friction_.data(),
+      last_dt_, sum_.data(), several_threads()};
   for_blocks([&](BlockWork& work) {
     contact_forces(view, work);
     mesh_forces(work);
@@ -266,13 +275,10 @@ void RrlinearWorld::move_tools() {
 
 void RrlinearWorld::step(double dt) {
   forces();
-  const LeapfrogView view{spheres_,
-                          pairs_,
-                          sum_.data(),
-                          settings_.gravity,
-                          settings_.material.local_damping,
-                          settings_.material.damping_reach == DampingReach::always,
-                          dt};
+  const double alpha = settings_.material.local_damping,
+               in_flight =
+                   settings_.material.damping_reach == DampingReach::always ? settings_.flight_damping : 0.0;
+  const LeapfrogView view{spheres_, pairs_, sum_.data(), settings_.gravity, alpha, in_flight * alpha, dt};
   for_blocks([&](BlockWork& work) { leapfrog(view, work); });
   disturbed_.clear();
   for (BlockWork& work : blocks_) {
@@ -309,6 +315,7 @@ double RrlinearWorld::own_step2(int i) const {
     const Vec3 along = normal.cwiseAbs2(), across = Vec3::Ones() - along;
     shift += k.kn * along + k.ks * across;
     turn += (k.ks * a.w * a.w + k.kr) * across;
+    if (law_.mu_t > 0) turn += k.kr * along;
   };
   for (const Neighbour& n : pairs_.neighbours(i)) {
     const Quad& b = spheres_.place[n.sphere];
@@ -346,8 +353,26 @@ double RrlinearWorld::stable_step() {
   return std::min({settings_.time_step_safety * std::sqrt(step2), travel, longest_step_});
 }
 
+// Of gravity, and of the pull of its contacts with meshes and sleepers, J.
 double RrlinearWorld::potential_energy(int i) const {
-  return -spheres_.velocity[i].w * settings_.gravity.dot(spheres_.place[i].vec());
+  double energy = -spheres_.velocity[i].w * settings_.gravity.dot(spheres_.place[i].vec());
+  if (law_.pull > 0)
+    for (const Neighbour& n : pairs_.neighbours(i))
+      if (n.touching() && (n.sphere >= spheres_.movable || spheres_.asleep[n.sphere]))
+        energy -= pull_work(i, n);
+  for (int k = 0; k < facets_.count(i); ++k) {
+    const MeshContact c = facets_.contact(i, k);
+    energy -= (law_.pull + ContactLaw::pull_of(meshes_[c.body]->surface().surface_energy)) *
+              spheres_.place[i].w * c.overlap;
+  }
+  return energy;
+}
+
+// What the pull of a contact has done since it closed, J.
+double RrlinearWorld::pull_work(int i, const Neighbour& n) const {
+  const Quad &a = spheres_.place[i], &b = spheres_.place[n.sphere];
+  const double overlap = a.w + b.w - (b.vec() - a.vec()).norm();
+  return law_.pull * ball_ball(law_, a.w, b.w).rbar * std::max(overlap, 0.0);
 }
 
 // Elastic energy of the contact of sphere i with a neighbour, J.
@@ -372,7 +397,11 @@ AwakeEnergy RrlinearWorld::awake_energy(const BlockWork& work) const {
     e.scale += v.w * settings_.gravity.norm() * x.w;
     for (int k = 0; k < facets_.count(i); ++k) e.elastic += elastic_energy_of(facets_.contact(i, k), i);
     for (const Neighbour& n : pairs_.neighbours(i))
-      if (n.sphere > i || spheres_.asleep[n.sphere]) e.elastic += elastic_energy_of(i, n);
+      if (n.sphere > i || spheres_.asleep[n.sphere]) {
+        e.elastic += elastic_energy_of(i, n);
+        if (law_.pull > 0 && n.sphere < spheres_.movable && !spheres_.asleep[n.sphere])
+          e.potential -= pull_work(i, n);
+      }
   }
   return e;
 }

@@ -56,6 +56,7 @@ class RrlinearWorld final : public RockWorld {
   double free_step2(double radius, double mass, double inertia) const;
   double own_step2(int i) const;
   double potential_energy(int i) const;
+  double pull_work(int i, const Neighbour& n) const;
   double elastic_energy_of(int i, const Neighbour& n) const;
   double elastic_energy_of(const MeshContact& c, int i) const;
   AwakeEnergy awake_energy(const BlockWork& work) const;
@@ -68,6 +69,7 @@ class RrlinearWorld final : public RockWorld {
   void for_blocks(Body&& body);
 
   ContactLaw law_;
+  std::vector<FrictionFactors> friction_;  // by sphere; empty without effects on contacts
   Team team_;
   bool changed_ = true;         // spheres or meshes were added or removed
   bool repair_due_ = false;     // a sphere has left its ball, or was lost

@@ -124,7 +124,20 @@ SCREE_INLINE Motions motions_of(const Spheres& s, const FourContacts& four) {
           {relative[0], relative[1], relative[2]}};
 }
 
+// Friction of the contacts of four pairs.
+SCREE_INLINE EffectFriction friction_of(const StepView& view, const FourContacts& four, TwinFloats memory) {
+  EffectFriction friction;
+  for (int k = 0; k < kLanes; ++k) {
+    const FrictionFactors &a = view.friction[four.first[k]], &b = view.friction[four.second[k]];
+    friction.mu[k] = view.law.mu * a.mu * b.mu;
+    friction.mu_r[k] = view.law.mu_r * a.mu_r * b.mu_r;
+  }
+  friction.twisting = first_half(memory);
+  return friction;
+}
+
 // The law for four contacts, of which the first `count` are there.
+template <bool kEffects>
 SCREE_INLINE void compute(const StepView& view, BlockWork& work, const FourContacts& four, int count,
                           Lanes& overlap_ratio) {
   const Spheres& s = view.spheres;
@@ -170,9 +183,16 @@ SCREE_INLINE void compute(const StepView& view, BlockWork& work, const FourConta
   for (int k = 0; k < kLanes; ++k) held[k] = load(*(memory[k] = memories + four.entry[k]->memory()));
   transpose(held[0], held[1], held[2], held[3]);
   LaneContactHistory history = {held[0], held[1], held[2]};
+  auto friction = [&] {
+    if constexpr (kEffects)
+      return friction_of(view, four, held[3]);
+    else
+      return PlainFriction{view.law.mu, view.law.mu_r};
+  }();
   const BasicContactForce<Lanes> f =
-      contact_step(view.law, ball_ball<Lanes>(view.law, r1, r2), motion, history);
+      contact_step(view.law, friction, ball_ball<Lanes>(view.law, r1, r2), motion, history);
   held[0] = history.x_, held[1] = history.y_, held[2] = history.z_, held[3] = TwinFloats{};
+  if constexpr (kEffects) held[3] = twin(friction.twisting, LaneFloats{});
   transpose(held[0], held[1], held[2], held[3]);
   for (int k = 0; k < kLanes; ++k) store(*memory[k], held[k]);
   overlap_ratio = larger(overlap_ratio, motion.overlap / smaller(r1, r2));
@@ -224,8 +244,8 @@ SCREE_INLINE void sieve(const StepView& view, BlockWork& work, Queues& queues) {
 }
 
 // Computes what has been collected; unless it is the last of a block, up to three contacts wait for others.
-SCREE_VECTORISED
-void work_off(const StepView& view, BlockWork& work, Queues& queues, bool last) {
+template <bool kEffects>
+SCREE_INLINE void work_off_as(const StepView& view, BlockWork& work, Queues& queues, bool last) {
   sieve(view, work, queues);
   auto& closed = queues.closed;
   assert(closed.count <= static_cast<int>(2 * (kFull + kTake)));
@@ -241,11 +261,19 @@ void work_off(const StepView& view, BlockWork& work, Queues& queues, bool last) 
       four.first[q] = std::min(row, other);
       four.second[q] = std::max(row, other);
     }
-    compute(view, work, four, count, queues.overlap_ratio);
+    compute<kEffects>(view, work, four, count, queues.overlap_ratio);
   }
   const int left = std::max(closed.count - k, 0);
   for (int q = 0; q < left; ++q) closed.put(q, closed.row[k + q], *closed.entry[k + q]);
   closed.count = left;
+}
+SCREE_VECTORISED
+void work_off(const StepView& view, BlockWork& work, Queues& queues, bool last) {
+  work_off_as<false>(view, work, queues, last);
+}
+SCREE_VECTORISED
+void work_off_with_effects(const StepView& view, BlockWork& work, Queues& queues, bool last) {
+  work_off_as<true>(view, work, queues, last);
 }
 
 }  // namespace
@@ -281,8 +309,9 @@ void contact_forces(const StepView& view, BlockWork& work) {
     open.count += 1 - touching;
     __builtin_prefetch(view.pairs.memories() + entry.memory(), 1);
   };
+  const auto work_it_off = view.friction == nullptr ? work_off : work_off_with_effects;
   const auto work_off_if_full = [&] {
-    if (closed.count >= kFull || open.count >= kFull) work_off(view, work, queues, false);
+    if (closed.count >= kFull || open.count >= kFull) work_it_off(view, work, queues, false);
   };
   for (const int i : work.awake) view.sum[i] = {};
   const bool sleepers = view.sleep.asleep() > 0;
@@ -302,7 +331,7 @@ void contact_forces(const StepView& view, BlockWork& work) {
       work_off_if_full();
     }
   }
-  work_off(view, work, queues, true);
+  work_it_off(view, work, queues, true);
   for (int k = 0; k < kLanes; ++k) work.overlap_ratio = std::max(work.overlap_ratio, queues.overlap_ratio[k]);
 }
 
@@ -327,7 +356,7 @@ void leapfrog(const LeapfrogView& view, BlockWork& work) {
   for (const int i : work.awake) {
     const Lanes force = load(view.sum[i].force), torque = load(view.sum[i].torque);
     Lanes v = load(s.velocity[i]), w = load(s.spin[i]), x = load(s.place[i]);
-    const Lanes alpha = zero + (view.damped_in_flight || force[3] > 0 ? view.alpha : 0.0);
+    const Lanes alpha = zero + (force[3] > 0 ? view.alpha : view.alpha_in_flight);
     const double mass = v[3], inertia = w[3];
     v += dt / mass * damped(force + mass * gravity, v, alpha);
     w += dt / inertia * damped(torque, w, alpha);

@@ -61,9 +61,10 @@ struct StepView {
   PairList& pairs;
   const Sleep& sleep;
   const ContactLaw& law;
-  double last_dt;   ///< s, the step that led to the present places
-  ForceSum* sum;    ///< by sphere
-  bool write_down;  ///< forces that cross a border are written down instead of added
+  const FrictionFactors* friction;  ///< by sphere; null: the plain law, without effects on contacts
+  double last_dt;                   ///< s, the step that led to the present places
+  ForceSum* sum;                    ///< by sphere
+  bool write_down;                  ///< forces that cross a border are written down instead of added
 };
 
 /// Forces of the contacts that the block's awake spheres own, or have with sleepers that own them, what they
@@ -75,8 +76,8 @@ struct LeapfrogView {
   const PairList& pairs;
   ForceSum* sum;  ///< by sphere; what was written down is added first
   Vec3 gravity;   ///< m/s2
-  double alpha;   ///< local damping
-  bool damped_in_flight;
+  double alpha;   ///< local damping of what touches something
+  double alpha_in_flight;
   double dt;  ///< s
 };
 

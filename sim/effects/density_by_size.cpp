@@ -1,0 +1,29 @@
+#include "sim/effects/registry.h"
+
+namespace scree {
+
+Effect density_by_size() {
+  return {
+      .name = "density_by_size",
+      .title = "density that changes with size",
+      .doc = "Ore minerals and pores break away: coarse and fine rock differ in density.",
+      .equation = "Density of a grain is times (d / D50)^exponent.",
+      .source =
+          "Specific gravities by size fraction of waste rock; thesis of Qiu (Polytechnique Montreal), "
+          "chapter 3.",
+      .parameters = {{.key = "exponent",
+                      .unit = "",
+                      .low = -0.5,
+                      .high = 0.5,
+                      .standard = 0.1,
+                      .prior_low = -0.2,
+                      .prior_high = 0.2,
+                      .doc = "Of size in the density."}},
+      .absent = 0,
+      .experiments = {},
+      .apply = [](std::span<const double> v, const EffectContext&,
+                  Modifications& model) { model.density_exponent += v[0]; },
+  };
+}
+
+}  // namespace scree

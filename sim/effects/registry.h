@@ -1,0 +1,20 @@
+#pragma once
+// The effects, one line each; each is described in the file of its name.
+#include "sim/effects/effect.h"
+
+namespace scree {
+
+Effect cohesion();
+Effect restitution();
+Effect rolling_by_size();
+Effect friction_by_size();
+Effect twisting();
+Effect weakening();
+Effect ground_friction();
+Effect sticky_tools();
+Effect undamped_flight();
+Effect density_by_size();
+Effect missing_fines();
+Effect release_speed();
+
+}  // namespace scree

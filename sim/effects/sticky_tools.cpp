@@ -1,0 +1,34 @@
+#include "sim/effects/registry.h"
+
+namespace scree {
+
+Effect sticky_tools() {
+  return {
+      .name = "sticky_tools",
+      .title = "rock that sticks to bed, blade or bucket",
+      .doc =
+          "Wet fines make a truck bed, blade or bucket sticky: the load leaves late, and some is carried "
+          "back.",
+      .equation =
+          "Contacts with beds, blades, buckets and other tools pull with F = 2 pi gamma R; gamma is such "
+          "that a grain of D50 is pulled with bond_number times its weight.",
+      .source = "Derjaguin, Muller & Toporov, J. Colloid Interface Sci. 53 (1975) for the pull-off force.",
+      .parameters = {{.key = "bond_number",
+                      .unit = "",
+                      .low = 0,
+                      .high = 100,
+                      .standard = 1,
+                      .prior_low = 0,
+                      .prior_high = 3,
+                      .doc = "Pull of a tool on a grain of D50 over its weight."}},
+      .absent = 0,
+      .experiments = {"end_dump", "push_dump", "repose_lift", "bucket_dump"},
+      .apply =
+          [](std::span<const double> v, const EffectContext& context, Modifications& model) {
+            // A grain on a plane has Rbar = R = D50 / 2, twice that of a pair.
+            model.tool_surface_energy += 0.5 * context.surface_energy(v[0]);
+          },
+  };
+}
+
+}  // namespace scree

@@ -1,0 +1,30 @@
+// A scenario's rock and grading with what its effects change.
+#include <algorithm>
+
+#include "sim/scene/scenario.h"
+
+namespace scree {
+
+EffectUse* Scenario::effect(const Effect& wanted) {
+  const auto at = std::find_if(effects.begin(), effects.end(),
+                               [&](const EffectUse& use) { return use.effect == &wanted; });
+  return at == effects.end() ? nullptr : &*at;
+}
+
+const EffectUse* Scenario::effect(const Effect& wanted) const {
+  return const_cast<Scenario*>(this)->effect(wanted);
+}
+
+EffectiveModel effective_model(const Scenario& scenario) {
+  EffectiveModel model{{}, read_grading(scenario.grading_file), scenario.material};
+  const EffectContext context{.d50 = model.grading.diameter(0.5), .density = scenario.material.density};
+  model.changes = modifications(scenario.effects, context);
+  model.material.normal_damping_ratio += model.changes.normal_damping_ratio;
+  model.material.density_exponent = model.changes.density_exponent;
+  model.material.density_diameter = context.d50;
+  if (model.changes.fines_share > 0)
+    model.grading = model.grading.with_fines(model.changes.fines_share, model.changes.fines_ratio);
+  return model;
+}
+
+}  // namespace scree

@@ -1,0 +1,170 @@
+// Effects as scenarios use them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "scree_version.h"
+#include "sim/scene/run.h"
+#include "tests/scene/scenario_fixture.h"
+
+namespace scree {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const char* const kDump = "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.3}\nexperiment: {type: end_dump}\n";
+
+TEST(EffectList, IsFitForUse) {
+  std::set<std::string_view> names;
+  for (const Effect& effect : all_effects()) {
+    EXPECT_TRUE(names.insert(effect.name).second) << effect.name;
+    for (const std::string_view text : {effect.title, effect.doc, effect.equation, effect.source})
+      EXPECT_GT(text.size(), 10) << effect.name;
+    ASSERT_FALSE(effect.parameters.empty());
+    const EffectParameter& amplitude = effect.parameters.front();
+    EXPECT_LE(amplitude.low, effect.absent) << effect.name;
+    EXPECT_GE(amplitude.high, effect.absent) << effect.name;
+    EXPECT_NE(amplitude.standard, effect.absent) << effect.name;
+    for (const EffectParameter& p : effect.parameters) {
+      EXPECT_LE(p.low, p.prior_low) << effect.name;
+      EXPECT_GE(p.high, p.prior_high) << effect.name;
+      EXPECT_LE(p.prior_low, p.standard) << effect.name;
+      EXPECT_GE(p.prior_high, p.standard) << effect.name;
+    }
+  }
+  EXPECT_EQ(find_effect("cohesion")->name, "cohesion");
+  EXPECT_EQ(find_effect("magic"), nullptr);
+}
+
+// An effect that is there changes something, and nothing at the amplitude that means absent.
+TEST(EffectList, AbsentMeansAbsent) {
+  const auto differs = [](const Modifications& m) {
+    const Modifications none;
+    return !m.contact.none() || m.flight_damping != none.flight_damping ||
+           m.normal_damping_ratio != none.normal_damping_ratio || m.ground_mu != none.ground_mu ||
+           m.ground_mu_r != none.ground_mu_r || m.tool_surface_energy != none.tool_surface_energy ||
+           m.density_exponent != none.density_exponent || m.fines_share != none.fines_share ||
+           m.release_speed != none.release_speed;
+  };
+  for (const Effect& effect : all_effects()) {
+    EffectUse use{&effect, {}};
+    for (const EffectParameter& p : effect.parameters) use.values.push_back(p.standard);
+    EXPECT_TRUE(differs(modifications(std::span(&use, 1), {}))) << effect.name;
+    use.values.front() = effect.absent;
+    EXPECT_FALSE(differs(modifications(std::span(&use, 1), {}))) << effect.name;
+  }
+}
+
+TEST(ScenarioEffects, AreReadWithTheirDefaults) {
+  const ScenarioFolder folder;
+  const auto result =
+      folder.load(std::string(kDump) + "effects:\n  weakening: {speed_m_per_s: 0.5}\n  cohesion: {}\n");
+  ASSERT_THAT(result.errors, IsEmpty());
+  const Scenario& s = result.scenario;
+  ASSERT_EQ(s.effects.size(), 2);
+  EXPECT_EQ(s.effects[0].effect->name, "cohesion");  // in the order of the list, not of the file
+  EXPECT_THAT(s.effects[0].values, ElementsAre(find_effect("cohesion")->parameters[0].standard));
+  EXPECT_THAT(s.effects[1].values, ElementsAre(find_effect("weakening")->parameters[0].standard, 0.5));
+}
+
+TEST(ScenarioEffects, AreSetFromTheCommandLine) {
+  const ScenarioFolder folder;
+  const auto result = folder.load(kDump, {"effects.cohesion.bond_number=0.25"});
+  ASSERT_THAT(result.errors, IsEmpty());
+  ASSERT_EQ(result.scenario.effects.size(), 1);
+  EXPECT_EQ(result.scenario.effects[0].values[0], 0.25);
+}
+
+TEST(ScenarioEffects, ResolvedFileHoldsThemAndOnlyThem) {
+  const ScenarioFolder folder;
+  EXPECT_THAT(folder.load(kDump).scenario.resolved_yaml, testing::Not(HasSubstr("effects")));
+  const auto once = folder.load(kDump, {"effects.weakening.share=0.25"});
+  EXPECT_THAT(once.scenario.resolved_yaml,
+              HasSubstr("effects:\n  weakening:\n    share: 0.25\n    speed_m_per_s: 0.3\nstop:"));
+  const auto again = folder.load(once.scenario.resolved_yaml);
+  ASSERT_THAT(again.errors, IsEmpty());
+  EXPECT_EQ(again.scenario.resolved_yaml, once.scenario.resolved_yaml);
+}
+
+TEST(ScenarioEffects, FaultsAreSaidAtTheirPlace) {
+  const ScenarioFolder folder;
+  EXPECT_THAT(folder.messages(std::string(kDump) + "effects: {cohesoin: {bond_number: 1}}\n"),
+              ElementsAre(testing::AllOf(HasSubstr("4:11: unknown key 'cohesoin' in effects"),
+                                         HasSubstr("did you mean 'cohesion'"))));
+  EXPECT_THAT(folder.messages(std::string(kDump) + "effects: {cohesion: {bond_number: -1}}\n"),
+              ElementsAre(HasSubstr("effects.cohesion.bond_number: -1 is out of range; allowed 0 to 100")));
+  EXPECT_THAT(folder.messages(std::string(kDump) + "effects: {cohesion: 1}\n"),
+              ElementsAre(HasSubstr("effects.cohesion: a map of keys is expected, found '1'")));
+  EXPECT_THAT(folder.messages(std::string(kDump) + "effects: [cohesion]\n"),
+              ElementsAre(HasSubstr("effects: a map of keys is expected, found a list")));
+  EXPECT_THAT(
+      folder.messages(
+          std::string(kDump) +
+          "engine: impulse\nnumerics: {impulse_friction: 1, impulse_rolling: 1}\neffects: {cohesion: {}}\n"),
+      ElementsAre(HasSubstr("effects: engine impulse has none")));
+}
+
+TEST(ScenarioEffects, ThatChangeNothingAreAWarning) {
+  const ScenarioFolder folder;
+  const auto result =
+      folder.load("grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.3}\nexperiment: {type: drop_test}\n",
+                  {"effects.release_speed.speed_m_per_s=1"});
+  EXPECT_THAT(result.errors, IsEmpty());
+  EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("effects.release_speed: changes nothing")));
+}
+
+// With fines the grading begins at its smallest diameter over the ratio, and their share passes it.
+TEST(MissingFines, GradingGoesOnBelow) {
+  const ScenarioFolder folder;
+  const auto result = folder.load(kDump, {"effects.missing_fines.share=0.2"});
+  const Grading with = effective_model(result.scenario).grading;
+  EXPECT_DOUBLE_EQ(with.min_diameter(), 0.05);
+  EXPECT_DOUBLE_EQ(with.passing(0.1), 0.2);
+  EXPECT_DOUBLE_EQ(with.passing(0.05 * std::sqrt(2)), 0.1);  // evenly in log d
+  const Grading without = read_grading(result.scenario.grading_file);
+  for (const double d : {0.2, 0.5, 0.9}) EXPECT_NEAR(with.passing(d), 0.2 + 0.8 * without.passing(d), 1e-12);
+}
+
+// Small heaps of lab rock: a second of computing each.
+Scenario heap(const std::vector<std::string>& overrides) {
+  const std::filesystem::path source = SCREE_SOURCE_DIR;
+  std::vector<std::string> all{"experiment.mass_kg=8", "stop.max_time_s=2", "output.frame_interval_s=0"};
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  auto result = load_scenario(source / "scenarios/repose_lab_coarse.yaml", all, source / "assets");
+  for (const auto& error : result.errors) ADD_FAILURE() << error.text();
+  return result.scenario;
+}
+
+std::vector<Grain> run(const std::vector<std::string>& overrides, int threads = 1) {
+  return run_scenario(heap(overrides), 10001, threads, {}).final_state.grains;
+}
+
+bool same(const std::vector<Grain>& a, const std::vector<Grain>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Grain& p, const Grain& q) {
+    return p.position == q.position && p.velocity == q.velocity;
+  });
+}
+
+// At the amplitude that means absent the numbers are those of the base model. The vector kernel for effects
+// computes the same as the plain one when its factors are 1: an exponent of 1e-300 switches it on.
+TEST(ScenarioEffects, BaseModelIsUntouched) {
+  const auto base = run({});
+  EXPECT_TRUE(same(base, run({"effects.cohesion.bond_number=0"})));
+  EXPECT_TRUE(same(base, run({"effects.friction_by_size.exponent=1e-300"})));
+  EXPECT_FALSE(same(base, run({"effects.friction_by_size.exponent=0.3"})));
+}
+
+TEST(ScenarioEffects, NumbersDoNotDependOnThreads) {
+  const std::vector<std::string> effects{
+      "effects.cohesion.bond_number=0.5", "effects.twisting.mu_t=0.2", "effects.weakening.share=0.3",
+      "effects.rolling_by_size.exponent=0.4", "effects.sticky_tools.bond_number=0.5"};
+  const auto one = run(effects, 1);
+  EXPECT_TRUE(same(one, run(effects, 2)));
+  EXPECT_TRUE(same(one, run(effects, 4)));
+}
+
+}  // namespace
+}  // namespace scree
