@@ -27,7 +27,7 @@ class FrozenStep {
   }
   int blocks() const { return static_cast<int>(blocks_.size()); }
   void forces(int block) {
-    contact_forces({spheres_, pairs_, sleep_, law_, 0.0, sums_.data(), false}, blocks_[block]);
+    contact_forces({spheres_, pairs_, sleep_, law_, nullptr, 0.0, sums_.data(), false}, blocks_[block]);
   }
   void move(int block) {
     leapfrog({spheres_, pairs_, sums_.data(), Vec3(0, 0, -9.81), 0.4, true, 0.0}, blocks_[block]);

@@ -60,7 +60,8 @@ void law_one_by_one(const ContactLaw& law, std::vector<Contact>& contacts) {
 }
 SCREE_VECTORISED
 void law_by_fours(const ContactLaw& law, std::vector<LaneContact>& contacts) {
-  for (LaneContact& c : contacts) c.force = contact_step(law, c.stiffness, c.motion, c.history);
+  PlainFriction friction{law.mu, law.mu_r};
+  for (LaneContact& c : contacts) c.force = contact_step(law, friction, c.stiffness, c.motion, c.history);
 }
 
 // One of four slides, the others stick: their memory stays as it is.

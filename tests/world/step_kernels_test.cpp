@@ -22,11 +22,15 @@ struct Scene {
   PairList pairs;
   Sleep sleep{false, 0.1};
   ContactLaw law;
+  std::vector<FrictionFactors> friction;
   std::vector<ForceSum> sums;
   std::vector<BlockWork> blocks;
 
-  Scene(int count, int fixed, const Material& material)
-      : spheres(random_spheres(count, fixed, 21)), law(material), sums(count) {
+  Scene(int count, int fixed, const Material& material, const ContactEffects& effects = {})
+      : spheres(random_spheres(count, fixed, 21)), law(material, effects), sums(count) {
+    if (!effects.none())
+      for (int i = 0; i < count; ++i)
+        friction.push_back(friction_factors(effects, 2 * spheres.place[i].w, i >= spheres.movable));
     Random random(22, 0, RandomPurpose::positions);
     for (int i = 0; i < spheres.movable; ++i) {
       spheres.velocity[i].set(any_vector(random));
@@ -41,7 +45,8 @@ struct Scene {
   }
   // One step's forces; as one thread does it, or as several do.
   void forces(double dt, bool write_down) {
-    const StepView view{spheres, pairs, sleep, law, dt, sums.data(), write_down};
+    const StepView view{spheres, pairs,       sleep,     law, friction.empty() ? nullptr : friction.data(),
+                        dt,      sums.data(), write_down};
     for (auto work = blocks.rbegin(); work != blocks.rend(); ++work) {
       work->inbox.clear();
       contact_forces(view, *work);
@@ -55,21 +60,24 @@ struct Scene {
 // The formulae of rrlinear.h for one contact with memory, as written in their source.
 struct Reference {
   Vec3 shear = Vec3::Zero(), rolling = Vec3::Zero();
+  double twisting = 0;
 };
 
-struct Dashpots {
-  double normal, shear;
+struct Additions {
+  double normal_dashpot = 0, shear_dashpot = 0;
+  ContactEffects effects = {};
 };
-class StepKernelsWithDashpots : public testing::TestWithParam<Dashpots> {};
+class StepKernelsWithAdditions : public testing::TestWithParam<Additions> {};
 
-TEST_P(StepKernelsWithDashpots, ForcesAreThoseOfTheLawPairByPair) {
+TEST_P(StepKernelsWithAdditions, ForcesAreThoseOfTheLawPairByPair) {
   Material material;
   material.mu = 0.3;
   material.mu_r = 0.2;
-  material.normal_damping_ratio = GetParam().normal;
-  material.shear_damping_ratio = GetParam().shear;
+  material.normal_damping_ratio = GetParam().normal_dashpot;
+  material.shear_damping_ratio = GetParam().shear_dashpot;
+  const ContactEffects& effects = GetParam().effects;
   const double dt = 0.05;
-  Scene scene(700, 60, material);
+  Scene scene(700, 60, material, effects);
   const Spheres& s = scene.spheres;
   std::vector<std::vector<Reference>> memory(700, std::vector<Reference>(700));
   for (int step = 0; step < 3; ++step) {
@@ -104,23 +112,37 @@ TEST_P(StepKernelsWithDashpots, ForcesAreThoseOfTheLawPairByPair) {
         const double fn =
             std::max(kn * u - 2 * material.normal_damping_ratio * std::sqrt(mass * kn) * n.dot(v), 0.0);
         m.shear = turned(m.shear) + ks * dt * slip;
-        const bool slides = m.shear.norm() > material.mu * fn;
+        double mu =
+            material.mu * (1 - effects.weakening * slip.norm() / (slip.norm() + effects.weakening_speed));
+        double mu_r = material.mu_r;
+        if (j < s.movable) {
+          const double size = std::sqrt(4 * r1 * r2) / effects.reference_diameter;
+          mu *= std::pow(size, effects.mu_exponent), mu_r *= std::pow(size, effects.mu_r_exponent);
+        } else {
+          const double size = std::sqrt(2 * r1 / effects.reference_diameter);
+          mu *= std::pow(size, effects.mu_exponent) * effects.fixed_mu;
+          mu_r *= std::pow(size, effects.mu_r_exponent) * effects.fixed_mu_r;
+        }
+        const bool slides = m.shear.norm() > mu * fn;
         if (slides) {
-          m.shear *= material.mu * fn / m.shear.norm();
+          m.shear *= mu * fn / m.shear.norm();
           ++sliding;
         }
         const Vec3 bend = w2 - w1 - n * n.dot(w2 - w1);
         m.rolling = turned(m.rolling) + kr * dt * bend;
-        const double most = material.mu_r * rbar * fn;
+        const double most = mu_r * rbar * fn;
         if (m.rolling.norm() > most) m.rolling *= most / m.rolling.norm();
-        Vec3 f = m.shear - n * fn;
+        const double most_twist = effects.mu_t * rbar * fn;
+        m.twisting = std::clamp(m.twisting + kr * dt * n.dot(w2 - w1), -most_twist, most_twist);
+        Vec3 f = m.shear - n * (fn - 2 * M_PI * effects.surface_energy * rbar);
         if (!slides) f += 2 * material.shear_damping_ratio * std::sqrt(mass * ks) * slip;
         force[i] += f, force[j] -= f;
         for (const auto& [sphere, arm] : {std::pair(i, a1), std::pair(j, a2)}) {
           forces[sphere] += f.norm() + kn * u;
-          torques[sphere] += std::abs(arm) * (f.norm() + kn * u) + m.rolling.norm();
+          torques[sphere] += std::abs(arm) * (f.norm() + kn * u) + m.rolling.norm() + std::abs(m.twisting);
         }
-        torque[i] += a1 * n.cross(f) + m.rolling, torque[j] += a2 * n.cross(f) - m.rolling;
+        const Vec3 moment = m.rolling + m.twisting * n;
+        torque[i] += a1 * n.cross(f) + moment, torque[j] += a2 * n.cross(f) - moment;
       }
     ASSERT_GT(contacts, 500);
     ASSERT_GT(sliding, 10);
@@ -135,9 +157,15 @@ TEST_P(StepKernelsWithDashpots, ForcesAreThoseOfTheLawPairByPair) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(WithAndWithout, StepKernelsWithDashpots,
-                         testing::Values(Dashpots{0, 0}, Dashpots{0.4, 0}, Dashpots{0, 0.3},
-                                         Dashpots{0.2, 0.5}));
+INSTANTIATE_TEST_SUITE_P(
+    WithAndWithout, StepKernelsWithAdditions,
+    testing::Values(Additions{0, 0}, Additions{0.4, 0}, Additions{0, 0.3}, Additions{0.2, 0.5},
+                    Additions{.effects = {.surface_energy = 5e4}}, Additions{.effects = {.mu_t = 0.1}},
+                    Additions{.effects = {.weakening = 0.6, .weakening_speed = 0.5}},
+                    Additions{
+                        .effects = {.mu_exponent = 0.5, .mu_r_exponent = -0.4, .reference_diameter = 0.8}},
+                    Additions{.effects = {.fixed_mu = 0.5, .fixed_mu_r = 2}},
+                    Additions{0.2, 0.5, {1e4, 0.2, 0.3, 1, 0.2, 0.3, 0.7, 1.5, 0.8}}));
 
 // A block that touches hundreds of small spheres: its row, and the pairs that close in one step, are longer
 // than what is taken at a time. Their springs push it up with sum kn u.
@@ -173,7 +201,7 @@ TEST(StepKernels, LongRowsAreTakenWhole) {
   split_into_blocks(sleep.awake(), blocks);
   std::vector<ForceSum> sums(s.size());
   for (int step = 0; step < 2; ++step) {
-    contact_forces({s, pairs, sleep, law, 1e-4, sums.data(), false}, blocks[0]);
+    contact_forces({s, pairs, sleep, law, nullptr, 1e-4, sums.data(), false}, blocks[0]);
     EXPECT_EQ(sums[0].force.w, small);
     EXPECT_LT((sums[0].force.vec() - expected).norm(), 1e-9 * small * kn * overlap);
     for (int k = 1; k <= small; ++k) EXPECT_EQ(sums[k].force.w, 1);
