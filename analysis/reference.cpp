@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/csv_table.h"
 #include "analysis/results.h"
+#include "sim/material/csv_table.h"
 
 namespace scree {
 

@@ -6,7 +6,7 @@
 #include "analysis/outputs.h"
 #include "analysis/reproduction.h"
 #include "analysis/welch.h"
-#include "analysis/csv_table.h"
+#include "sim/material/csv_table.h"
 
 namespace scree {
 namespace {
