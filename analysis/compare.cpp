@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string_view>
 
+#include "analysis/finished_runs.h"
 #include "analysis/outputs.h"
 
 namespace scree {
@@ -28,6 +30,23 @@ Meaning meaning_of(const ReferenceValue& reference) {
   return relation == "range" ? Meaning::range : Meaning::none;
 }
 
+namespace {
+
+constexpr std::string_view kScatter = "_scatter";
+
+// Ours of a printed value, and its deviation; of a printed scatter that of the seeds: a deviation of n values
+// scatters by its 1 / sqrt(2 (n - 1)).
+MeanStd simulated_value(const ReferenceValue& row, const std::vector<Outputs>& seeds) {
+  PileValue value = pile_value(row);
+  const bool scatter = value.quantity.ends_with(kScatter);
+  if (scatter) value.quantity.resize(value.quantity.size() - kScatter.size());
+  const MeanStd both = spread_of(seeds, [&](const Outputs& seed) { return output_for(value, seed); });
+  if (!scatter) return both;
+  return both.n > 1 ? MeanStd{both.std, both.std / std::sqrt(2.0 * (both.n - 1)), both.n} : MeanStd{};
+}
+
+}  // namespace
+
 std::vector<Comparison> compare_with_reference(const std::vector<Outputs>& seeds,
                                                const std::vector<ReferenceValue>& reference,
                                                const std::vector<std::string>& cases) {
@@ -40,12 +59,12 @@ std::vector<Comparison> compare_with_reference(const std::vector<Outputs>& seeds
       const Meaning meaning = meaning_of(row);
       if (row.case_name != name || meaning == Meaning::none) continue;
       if (meaning != Meaning::value && row.kind != "pfc3d") continue;
-      std::vector<double> values;
-      for (const Outputs& seed : seeds)
-        if (const auto value = output_for(row, seed)) values.push_back(*value);
-      const MeanStd simulated = mean_std(values);
+      const MeanStd simulated = simulated_value(row, seeds);
       if (simulated.n == 0) continue;
       Comparison comparison{row, simulated.mean, std::nullopt, std::nullopt};
+      comparison.finished_instead = std::any_of(seeds.begin(), seeds.end(), [&](const Outputs& seed) {
+        return finished_pile_instead(pile_value(row), seed);
+      });
       if (simulated.n > 1) comparison.simulated_std = simulated.std;
       const double printed_std = row.std.value_or(row.rounding / std::sqrt(3.0));
       const double deviation = std::hypot(printed_std, comparison.simulated_std.value_or(0));
@@ -60,6 +79,19 @@ std::vector<Comparison> compare_with_reference(const std::vector<Outputs>& seeds
     }
   }
   return comparisons;
+}
+
+std::vector<std::string> comparison_notes(const std::vector<Comparison>& comparison) {
+  std::vector<std::string> notes;
+  for (const Comparison& row : comparison) {
+    if (!row.finished_instead) continue;
+    std::string note = fmt::format(
+        "{}: printed of the pile after load {}, which was not kept; held against the finished pile "
+        "(output.after_dumps: [{}] keeps it)",
+        row.reference.case_name, row.reference.dumps, row.reference.dumps);
+    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
+  }
+  return notes;
 }
 
 }  // namespace scree

@@ -38,21 +38,37 @@ bool has_sections(const std::string& experiment) {
   return experiment == "end_dump" || experiment == "push_dump" || experiment == "bucket_dump";
 }
 
-bool may_give(const std::string& experiment, const std::string& output) {
-  const std::vector<std::string> plain = plain_names(experiment);
-  if (std::find(plain.begin(), plain.end(), output) != plain.end()) return true;
-  if (!has_sections(experiment)) return false;
-  static const std::regex slope("([a-z0-9_]+)_S[1-9][0-9]*(of[1-9][0-9]*)?(_dump[1-9][0-9]*)?");
+bool contains(const std::vector<int>& numbers, int number) {
+  return std::find(numbers.begin(), numbers.end(), number) != numbers.end();
+}
+
+enum class Given { yes, no, not_by_this_one };
+
+// not_by_this_one: others of its type give it.
+Given given(const OutputScope& scope, const std::string& output) {
+  const std::vector<std::string> plain = plain_names(scope.experiment);
+  if (std::find(plain.begin(), plain.end(), output) != plain.end()) return Given::yes;
+  if (!has_sections(scope.experiment)) return Given::no;
+  // Numbers of up to four digits: no pile has more sections or loads.
+  static const std::regex slope(
+      "([a-z0-9_]+)_S([1-9][0-9]{0,3})(?:of([1-9][0-9]{0,3}))?(?:_dump([1-9][0-9]{0,3}))?");
   static const std::regex cell("([a-z0-9_]+)_(top|middle|bottom)");
+  const bool cells = scope.experiment == "bucket_dump";
   std::smatch parts;
-  if (!std::regex_match(output, parts, experiment == "bucket_dump" ? cell : slope)) return false;
+  if (!std::regex_match(output, parts, cells ? cell : slope)) return Given::no;
   static const std::set<std::string> of_bench{"lateral_chi_std", "lateral_chi_range", "lateral_d50_rel_std",
                                               "flow_speed", "flow_fast"};
-  if (of_bench.contains(parts[1]))
-    return experiment != "bucket_dump" && !parts[2].matched && !parts[3].matched;
   const auto& fields = section_fields();
-  return std::any_of(fields.begin(), fields.end(),
-                     [&](const SectionField& field) { return parts[1] == field.name; });
+  const bool of_section = std::any_of(fields.begin(), fields.end(),
+                                      [&](const SectionField& field) { return parts[1] == field.name; });
+  if (cells) return of_section ? Given::yes : Given::no;
+  const bool plain_section = !parts[3].matched && !parts[4].matched;
+  if (!of_section && !(of_bench.contains(parts[1]) && plain_section)) return Given::no;
+  const int count = parts[3].matched ? std::stoi(parts[3]) : scope.sections;
+  if (std::stoi(parts[2]) > count) return Given::not_by_this_one;
+  if (parts[3].matched && !contains(scope.further_sections, count)) return Given::not_by_this_one;
+  return parts[4].matched && !contains(scope.after_dumps, std::stoi(parts[4])) ? Given::not_by_this_one
+                                                                               : Given::yes;
 }
 
 // Where chi changes sign along the slope, from the crest; linear between the middles of sections.
@@ -139,8 +155,9 @@ Outputs outputs_of(const SeedResult& seed) {
       add(fmt::format("flow_fast_S{}", k + 1), seed.flow->highest_fast()[k]);
     }
     add("flow_depth_m", seed.flow->largest_depth());
-    add("arrival_energy_j_per_kg", seed.flow->arrival().mean_energy);
-    add("arrival_share_of_drop", seed.flow->arrival().share_of_drop);
+    const auto arrival = seed.flow->arrival();
+    add("arrival_energy_j_per_kg", arrival.mean_energy);
+    add("arrival_share_of_drop", arrival.share_of_drop);
   }
   if (seed.lateral) {
     add("point1_toe_width_m", seed.lateral->point1_toe_width);
@@ -159,45 +176,66 @@ std::vector<Outputs> outputs_of(const std::vector<SeedResult>& seeds) {
   return all;
 }
 
-std::optional<std::string> output_name_for(const ReferenceValue& reference, const Outputs& outputs) {
-  const std::string name = output_name(reference.quantity);
+PileValue pile_value(const ReferenceValue& reference) {
+  return {reference.quantity, reference.section, section_count(reference), reference.dumps};
+}
+
+std::optional<std::string> output_name_for(const PileValue& value, const Outputs& outputs) {
+  const std::string name = output_name(value.quantity);
   const auto if_there = [&](const std::string& key) {
     return outputs.contains(key) ? std::optional(key) : std::nullopt;
   };
   const int own = whole_number(outputs, "sections"), dumps = whole_number(outputs, "dumps");
-  const int count = section_count(reference);
-  if (reference.section == "whole") return if_there(name);
-  if (reference.quantity == "toe_width") return own == count ? if_there(name) : std::nullopt;
-  std::string section = reference.section;
+  if (value.section == "whole") return if_there(name);
+  if (value.quantity == "toe_width") return own == value.sections ? if_there(name) : std::nullopt;
+  std::string section = value.section;
   for (int i = 0; i < 3; ++i)
     if (section == kCells[i]) {
       if (const auto cell = if_there(fmt::format("{}_{}", name, section))) return cell;
       section = fmt::format("S{}", i + 1);
     }
   const auto after = [&](int dump) {
-    return if_there(fmt::format("{}_{}{}", name, section, suffix(count, own, dump, dumps)));
+    return if_there(fmt::format("{}_{}{}", name, section, suffix(value.sections, own, dump, dumps)));
   };
-  if (reference.dumps > 0 && reference.dumps != dumps)
-    if (const auto then = after(reference.dumps)) return then;
+  if (value.dumps > 0 && value.dumps != dumps)
+    if (const auto then = after(value.dumps)) return then;
   return after(dumps);
 }
 
-std::optional<double> output_for(const ReferenceValue& reference, const Outputs& outputs) {
-  const auto name = output_name_for(reference, outputs);
+std::optional<double> output_for(const PileValue& value, const Outputs& outputs) {
+  const auto name = output_name_for(value, outputs);
   return name ? std::optional(outputs.at(*name)) : std::nullopt;
 }
 
-std::string why_not_given(const std::string& experiment, const std::string& output) {
-  if (may_give(experiment, output)) return {};
-  std::vector<std::string> names = plain_names(experiment);
-  if (has_sections(experiment))
+bool finished_pile_instead(const PileValue& value, const Outputs& outputs) {
+  const int dumps = whole_number(outputs, "dumps");
+  if (value.dumps == 0 || dumps == 0 || value.dumps == dumps) return false;
+  const auto name = output_name_for(value, outputs);
+  return name && !name->ends_with(fmt::format("_dump{}", value.dumps));
+}
+
+std::string why_not_given(const OutputScope& scope, const std::string& output) {
+  const Given answer = given(scope, output);
+  if (answer == Given::yes) return {};
+  if (answer == Given::not_by_this_one)
+    return fmt::format(
+        "this scenario cuts the slope into {} sections (output.sections){}{}", scope.sections,
+        scope.further_sections.empty()
+            ? ", no others (output.further_sections)"
+            : fmt::format(" and {} (output.further_sections)", fmt::join(scope.further_sections, ", ")),
+        scope.after_dumps.empty()
+            ? ", and keeps no pile before the last load (output.after_dumps)"
+            : fmt::format(", and keeps the pile after loads {} (output.after_dumps) and the finished one",
+                          fmt::join(scope.after_dumps, ", ")));
+  std::vector<std::string> names = plain_names(scope.experiment);
+  if (has_sections(scope.experiment))
     for (const SectionField& field : section_fields())
-      names.push_back(fmt::format("{}_{}", field.name, experiment == "bucket_dump" ? "top" : "S1"));
-  return fmt::format("a scenario of type {} does not give it; it gives {}{}", experiment,
+      names.push_back(fmt::format("{}_{}", field.name, scope.experiment == "bucket_dump" ? "top" : "S1"));
+  return fmt::format("a scenario of type {} does not give it; it gives {}{}", scope.experiment,
                      fmt::join(names, ", "),
-                     experiment == "bucket_dump" ? "; middle and bottom alike"
-                     : has_sections(experiment)  ? "; S2, S3 and so on alike, S1of3, S1_dump2"
-                                                 : "");
+                     scope.experiment == "bucket_dump" ? "; middle and bottom alike"
+                     : has_sections(scope.experiment)  ? "; S2, S3 and so on alike, S1of3, S1_dump2"
+                                                       : "");
 }
 
 }  // namespace scree

@@ -20,16 +20,35 @@ namespace scree {
 /// layer_coarsening_down, layer_variance_between, layer_variance_by_chance (layers.h), largest_at_toe. Tables
 /// beside the scenario's own number of sections have names like chi_S1of3, piles before the last dump names
 /// like chi_S1_dump3 or chi_S1of3_dump3. A number that does not exist is left out.
+/// inside_... and layer_... are of a section through the first dump point: the rock within 4 m of it on
+/// either side (half a truck bed or blade), in cells of a tenth of the bench's height. flow_depth_m is that
+/// of a band of 2 m on either side of the same point (FlowSettings::half_width).
 Outputs outputs_of(const SeedResult& seed);
 std::vector<Outputs> outputs_of(const std::vector<SeedResult>& seeds);
 
-/// The output that a printed value is to be held against, of those given; none if there is none. A value of
-/// the pile after some dump is held against that pile, or against the finished one where that was not kept.
-std::optional<std::string> output_name_for(const ReferenceValue& reference, const Outputs& outputs);
-std::optional<double> output_for(const ReferenceValue& reference, const Outputs& outputs);
+/// A number of a pile under the names of printed values.
+struct PileValue {
+  std::string quantity, section;  ///< as in ReferenceValue
+  int sections = 6;               ///< into which the slope is cut
+  int dumps = 0;                  ///< in the pile; 0: the finished one
+};
+PileValue pile_value(const ReferenceValue& reference);
 
-/// Empty if a scenario with an experiment of this type (end_dump, push_dump, bucket_dump, repose_lift,
-/// drop_test) gives an output of this name; else a message that says what it gives.
-std::string why_not_given(const std::string& experiment, const std::string& output);
+/// The output that is this number, of those given; none if there is none. A value of the pile after some dump
+/// is that pile's, or the finished one's where that was not kept.
+std::optional<std::string> output_name_for(const PileValue& value, const Outputs& outputs);
+std::optional<double> output_for(const PileValue& value, const Outputs& outputs);
+/// The finished pile stands for one that was not kept.
+bool finished_pile_instead(const PileValue& value, const Outputs& outputs);
+
+/// What decides which outputs a scenario gives.
+struct OutputScope {
+  std::string experiment;  ///< end_dump, push_dump, bucket_dump, repose_lift, drop_test
+  int sections = 6;
+  std::vector<int> further_sections, after_dumps;
+};
+
+/// Empty if such a scenario gives an output of this name; else a message that says what it gives.
+std::string why_not_given(const OutputScope& scope, const std::string& output);
 
 }  // namespace scree

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "analysis/section_canvas.h"
 #include "analysis/summary.h"
 
 namespace scree {
@@ -15,23 +16,17 @@ namespace {
 
 constexpr std::array<unsigned, 9> kViridis{0x440154, 0x472d7b, 0x3b528b, 0x2c728e, 0x21918c,
                                            0x28ae80, 0x5ec962, 0xaddc30, 0xfde725};
-constexpr double kPixels = 2000;  // longest side of the drawn area; pictures are twice screen size
-constexpr double kMostPixelsUp = 1400;
 
 /// Where discs lie in a view, and what is drawn first.
 struct Disc {
   double across = 0, up = 0, depth = 0, radius = 0, diameter = 0;  // m; larger depth is farther
 };
 
-struct Frame {
-  double left = 0, right = 0, low = 0, high = 0;  // m
-};
-
 struct View {
   std::vector<Disc> discs;
   std::string across_label, up_label, title;
   std::string under, over;  // gnuplot lines, drawn before and after the discs
-  Frame frame;
+  SectionFrame frame;
 };
 
 struct SizeRange {
@@ -46,13 +41,6 @@ SizeRange size_range(const std::vector<Grain>& grains) {
   }
   if (range.high < 1.01 * range.low) range = {range.low / 1.1, range.high * 1.1};
   return range;
-}
-
-std::string palette() {
-  std::string out = "set palette defined (";
-  for (std::size_t i = 0; i < kViridis.size(); ++i)
-    out += fmt::format("{}{} '#{:06x}'", i ? ", " : "", i, kViridis[i]);
-  return out + ")\n";
 }
 
 /// Two discs a grain, a dark one under a coloured one, give an outline that never swallows a small grain's
@@ -72,36 +60,20 @@ std::string disc_rows(std::vector<Disc> discs, const SizeRange& range, double me
 
 std::string script(const View& view, const SizeRange& range) {
   const double across = view.frame.right - view.frame.left, up = view.frame.high - view.frame.low;
-  const double pixels_a_metre = std::min(kPixels / across, kMostPixelsUp / up);
-  const double left = 170, right = 300, below = 140, above = 90;
-  const double width = left + right + pixels_a_metre * across, height = below + above + pixels_a_metre * up;
-  std::string out = fmt::format(
-      "set terminal pngcairo noenhanced size {:.0f},{:.0f} font 'DejaVu Sans,11' fontscale 2 linewidth 2\n",
-      width, height);
-  out += fmt::format("set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\n", left / width,
-                     1 - right / width);
-  out += fmt::format("set bmargin at screen {:.5f}\nset tmargin at screen {:.5f}\n", below / height,
-                     1 - above / height);
-  out += fmt::format("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\n", view.frame.left,
-                     view.frame.right, view.frame.low, view.frame.high);
-  out += "set minussign\nset border 3 lc rgb '#777777'\nset tics nomirror out scale 0.6 tc rgb '#333333'\n";
+  const double pixels_a_metre = std::min(kSheet.most_across / across, kSheet.most_up / up);
+  const double width = kSheet.left + kSheet.right + pixels_a_metre * across;
+  const double height = kSheet.below + kSheet.above + pixels_a_metre * up;
+  std::string out =
+      sheet_head(width, height) + panel_place(view.frame, width, height, kSheet.below, pixels_a_metre * up);
   out += fmt::format("set xlabel {}\nset ylabel {}\nset title {} offset 0,-0.3\n",
                      gnuplot_quoted(view.across_label), gnuplot_quoted(view.up_label),
                      gnuplot_quoted(view.title));
-  out += palette() + "set logscale cb\n";
+  out += viridis_palette() + "set logscale cb\n";
   out += fmt::format(
       "set cbrange [{:.6g}:{:.6g}]\nset cbtics ({}) scale 0.4\nset cblabel 'grain diameter (m)'\n", range.low,
       range.high, log_ticks(range.low, range.high));
-  out +=
-      fmt::format("set colorbox user origin screen {:.5f}, screen {:.5f} size screen {:.5f}, screen {:.5f}\n",
-                  1 - (right - 60) / width, below / height, 36 / width, 1 - (below + above) / height);
   out += "$discs << END\n" + disc_rows(view.discs, range, 1 / pixels_a_metre) + "END\n";
-  // The last curve draws nothing: it makes gnuplot show the colour scale.
-  out += fmt::format(
-      "$none << END\n0 1e9 {:.6g}\nEND\n{}plot $discs using 1:2:3:4 with circles lc rgb variable fs solid "
-      "1.0 noborder "
-      "notitle{}, $none using 1:2:3 with points ps 0 lc palette notitle\n",
-      range.low, view.under, view.over);
+  out += view.under + plot_discs(range.low, view.over);
   return out;
 }
 
@@ -133,8 +105,9 @@ double heaviest_cut(const std::vector<Grain>& grains, double depth) {
 }
 
 /// Room around the discs, with the bench when there is one.
-Frame frame_around(const std::vector<Disc>& discs, double bench_height) {
-  Frame frame{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest(), 0, bench_height};
+SectionFrame frame_around(const std::vector<Disc>& discs, double bench_height) {
+  SectionFrame frame{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest(), 0,
+                     bench_height};
   double largest = 0;
   for (const Disc& disc : discs) {
     frame.left = std::min(frame.left, disc.across - disc.radius);
@@ -156,7 +129,7 @@ std::string line(double x0, double z0, double x1, double z1, const char* look) {
 }
 
 /// Boundaries of the sections with their names, at the right of the view.
-std::string section_lines(const RunResult& result, const Frame& frame) {
+std::string section_lines(const RunResult& result, const SectionFrame& frame) {
   const SectionTable* table = section_layout(result, 0);
   if (!table || result.bench_height <= 0) return "";
   std::string out;
@@ -171,7 +144,7 @@ std::string section_lines(const RunResult& result, const Frame& frame) {
   return out;
 }
 
-std::string bench_lines(const RunResult& result, const SceneFacts& scene, const Frame& frame) {
+std::string bench_lines(const RunResult& result, const SceneFacts& scene, const SectionFrame& frame) {
   const double height = result.bench_height;
   if (height <= 0 || !scene.bench_slope) return "";
   const double toe = height / std::tan(*scene.bench_slope * std::numbers::pi / 180);
@@ -232,6 +205,13 @@ std::string log_ticks(double low, double high) {
       if (const double size = decade * step; size >= low * 0.999 && size <= high * 1.001)
         ticks += fmt::format("{}'{:.3g}' {:.6g}", ticks.empty() ? "" : ", ", size, size);
   return ticks;
+}
+
+std::string viridis_palette() {
+  std::string out = "set palette defined (";
+  for (std::size_t i = 0; i < kViridis.size(); ++i)
+    out += fmt::format("{}{} '#{:06x}'", i ? ", " : "", i, kViridis[i]);
+  return out + ")\n";
 }
 
 unsigned viridis(double share) {

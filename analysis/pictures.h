@@ -49,5 +49,7 @@ std::string log_ticks(double low, double high);
 
 /// Colour of viridis (van der Walt and Smith, 2015) at a share from 0 (dark blue) to 1 (yellow), 0xRRGGBB.
 unsigned viridis(double share);
+/// The palette of viridis(), as a line for gnuplot.
+std::string viridis_palette();
 
 }  // namespace scree

@@ -3,19 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/csv_table.h"
 #include "analysis/results.h"
+#include "sim/material/csv_table.h"
 
 namespace scree {
 
 namespace {
-
-// 0.05 of 0.6, 0.5 of 375.
-double half_of_last_digit(const std::string& number) {
-  const auto point = number.find('.');
-  return 0.5 *
-         std::pow(10.0, point == std::string::npos ? 0.0 : -static_cast<double>(number.size() - point - 1));
-}
 
 // Makes a range of a bound and the other one of the same, if that is there.
 bool joined(const ReferenceValue& row, std::vector<ReferenceValue>& values) {
@@ -35,8 +28,8 @@ bool joined(const ReferenceValue& row, std::vector<ReferenceValue>& values) {
 }  // namespace
 
 std::vector<ReferenceValue> read_reference(const std::filesystem::path& file) {
-  CsvTable table(
-      file, {"case", "quantity", "section", "kind", "value", "std", "unit", "relation", "source", "dumps"});
+  CsvTable table(file, {"case", "quantity", "section", "kind", "value", "std", "unit", "relation", "source",
+                        "dumps", "rounding"});
   std::vector<ReferenceValue> values;
   while (table.next()) {
     ReferenceValue row;
@@ -45,9 +38,10 @@ std::vector<ReferenceValue> read_reference(const std::filesystem::path& file) {
     row.section = table.text("section");
     row.kind = table.one_of("kind", {"pfc3d", "measured"});
     row.value = table.number("value");
-    row.rounding = half_of_last_digit(table.text("value"));
     row.std = table.optional_number("std");
     if (row.std && *row.std < 0) table.fail(fmt::format("std {} is below 0", *row.std));
+    row.rounding = table.optional_number("rounding").value_or(0);
+    if (row.rounding < 0) table.fail(fmt::format("rounding {} is below 0", row.rounding));
     row.unit = table.one_of("unit", {"m", "t", "deg", "-"});
     row.relation = table.one_of(
         "relation", {"eq", "approx", "lt", "le", "gt", "min", "max", "mean", "median", "derived"});

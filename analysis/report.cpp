@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <string_view>
 
+#include "analysis/finished_runs.h"
 #include "analysis/flow_picture.h"
 #include "analysis/inside_pictures.h"
+#include "analysis/lateral_table.h"
 #include "analysis/outputs.h"
 #include "analysis/report_page.h"
 #include "analysis/report_text.h"
@@ -41,10 +41,7 @@ std::string section_rows(const RunResult& result, std::size_t table) {
           std::find_if(section_fields().begin(), section_fields().end(),
                        [&](const SectionField& one) { return std::string_view(one.name) == name; });
       const MeanStd both = mean_std(over_seeds(result, table, i, field->value));
-      out += fmt::format(
-          "<td>{}</td>",
-          both.n == 0 ? "–"
-                      : value_cell(name, both.mean, both.n > 1 ? std::optional(both.std) : std::nullopt, ""));
+      out += fmt::format("<td>{}</td>", value_cell(name, both, ""));
     }
     out += "</tr>\n";
   }
@@ -118,14 +115,10 @@ std::string inside_table(const RunResult& result) {
   const std::vector<Outputs> seeds = outputs_of(result.seeds);
   std::string rows;
   for (const Row& row : kRows) {
-    std::vector<double> values;
-    for (const Outputs& seed : seeds)
-      if (const auto found = seed.find(row.name); found != seed.end()) values.push_back(found->second);
-    const MeanStd both = mean_std(values);
+    const MeanStd both = spread_of(seeds, row.name);
     if (both.n == 0) continue;
-    rows += fmt::format(
-        "<tr><td class=\"word\">{}</td><td>{}</td></tr>\n", row.words,
-        value_cell(row.name, both.mean, both.n > 1 ? std::optional(both.std) : std::nullopt, row.unit));
+    rows += fmt::format("<tr><td class=\"word\">{}</td><td>{}</td></tr>\n", row.words,
+                        value_cell(row.name, both, row.unit));
   }
   if (rows.empty()) return rows;
   return "<div class=\"wide\"><table><thead><tr><th class=\"word\">Inside and flow</th><th>This "
@@ -210,7 +203,7 @@ void write_report(const RunResult& result, const std::filesystem::path& folder, 
     page += "<h2>Held against printed values</h2>\n" + comparison_table(result.comparison);
   page += figures("Charts", draw_charts(result, scene, pictures));
   page += figures("Inside the pile, and the flow", draw_inside_of(result, pictures)) + inside_table(result);
-  page += section_tables(result) + facts(result) + kGlossary;
+  page += section_tables(result) + lateral_table(result) + facts(result) + kGlossary;
   const std::string under =
       fmt::format("Simulated with scree {}, scenario {}", result.version, result.scenario);
   write_text_file(folder / "report.html",

@@ -116,6 +116,10 @@ std::string value_cell(std::string_view quantity, double value, std::optional<do
   return out;
 }
 
+std::string value_cell(std::string_view quantity, const MeanStd& value, const std::string& unit) {
+  return value_cell(quantity, value.mean, value.n > 1 ? std::optional(value.std) : std::nullopt, unit);
+}
+
 std::string comparison_table(const std::vector<Comparison>& comparison) {
   if (comparison.empty()) return "";
   std::string out =

@@ -17,6 +17,8 @@ std::string html_page(const std::string& title, const std::string& under, const 
 /// A value with its deviation below it, both with the same decimals; a dash for what does not exist.
 std::string value_cell(std::string_view quantity, double value, std::optional<double> std,
                        const std::string& unit);
+/// A mean with its deviation, if there is one; a dash for a mean of nothing.
+std::string value_cell(std::string_view quantity, const MeanStd& value, const std::string& unit);
 
 /// Printed values beside ours with z, coloured by agreement; empty without any.
 std::string comparison_table(const std::vector<Comparison>& comparison);

@@ -166,6 +166,10 @@ std::string duration_text(double seconds) {
   return number_text(seconds / 3600) + " h";
 }
 
+std::string p_text(double p) {
+  return p < 0.001 ? "< 0.001" : decimals_text(p, 3);
+}
+
 std::string kind_in_words(const std::string& kind) {
   return kind == "pfc3d" ? "PFC3D" : kind;
 }
@@ -176,6 +180,7 @@ std::string quantity_in_words(const std::string& quantity) {
       {"mass_t", "mass"},
       {"xl_chi_zero", "place x/L where χ changes sign"},
       {"toe_width", "width at the toe of the first point's rock"},
+      {"lateral_chi_std", "deviation of χ across"},
       {"lateral_chi_range", "largest difference of χ across"},
       {"rebound_height", "rebound height"},
       {"angle", "repose angle"},
@@ -183,6 +188,9 @@ std::string quantity_in_words(const std::string& quantity) {
       {"share_above_1m", "share of all rock above 1 m"},
       {"share_above_1m_orig", "rock above 1 m, as dumped"}};
   if (const auto found = words.find(quantity); found != words.end()) return found->second;
+  if (constexpr std::string_view scatter = "_scatter"; quantity.ends_with(scatter))
+    return fmt::format("deviation between repeats of {}",
+                       quantity_in_words(quantity.substr(0, quantity.size() - scatter.size())));
   if (quantity.size() >= 3 && quantity[0] == 'd' && quantity.find_first_not_of("0123456789", 1) >= 3) {
     const std::string size = fmt::format("D{}", quantity.substr(1, quantity.find('_') - 1));
     if (quantity.ends_with("_rel")) return fmt::format("{0} / {0} as dumped", size);

@@ -25,6 +25,9 @@ std::string count_text(double value);
 /// Seconds as "48 s", "12.5 min" or "3.4 h".
 std::string duration_text(double seconds);
 
+/// A probability with three decimals, "< 0.001" below; a dash for what does not exist.
+std::string p_text(double p);
+
 /// pfc3d -> "PFC3D", measured -> "measured".
 std::string kind_in_words(const std::string& kind);
 /// chi -> "segregation degree χ", d50_rel -> "D50 / D50 as dumped"; an unknown name stays.

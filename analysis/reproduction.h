@@ -5,21 +5,48 @@
 #include <string>
 #include <vector>
 
-#include "analysis/results.h"
+#include "analysis/finished_runs.h"
+#include "analysis/ordered_trend.h"
+#include "analysis/outputs.h"
 
 namespace scree {
 
 /// One case and its finished runs.
 struct CaseResult {
   std::string name, title;
-  std::vector<Outputs> seeds;  ///< of the runs that are done and came to rest
-  int failed = 0, missing = 0;
-  int restless = 0;            ///< runs left out because a load still moved at its time limit
+  FinishedRuns runs;
   double largest_overlap = 0;  ///< over the smaller radius, of all its runs
   double lost_mass = 0;        ///< t, of all its runs
-  double wall_seconds = 0;     ///< of all its runs together
   std::vector<Comparison> comparison;
+  std::optional<double> blade_velocity;  ///< m/s, of push dumping
 };
+
+/// Whether rock is fine at the crest and coarse at the toe of a case with six sections.
+struct SegregationSigns {
+  std::string case_name;
+  MeanStd crest, toe;  ///< chi of S1 and S6
+  double p_crest = 0,
+         p_toe = 0;  ///< one-sided: of chi(S1) < 0, of chi(S6) > 0 (p_of_sign); NaN with one seed
+  int as_expected = 0, signs = 0;  ///< of the two signs of each seed
+  MeanStd zero;                    ///< x/L where chi changes sign, of the seeds in which it does once
+  std::optional<double> printed_zero;
+};
+/// Those of the cases that have runs with six sections.
+std::vector<SegregationSigns> segregation_signs(const std::vector<CaseResult>& cases);
+
+/// How a number of a pile changes with the velocity of the blade, over all seeds of all cases of push
+/// dumping.
+struct VelocityTrend {
+  PileValue value;
+  std::string first, last;  ///< cases of the slowest and the fastest blade
+  std::size_t runs = 0;
+  Slope here;                ///< per m/s
+  JonckheereTerpstra order;  ///< groups by velocity
+  double printed_slope = 0;  ///< least squares over PFC3D's printed means; NaN without two
+  std::size_t printed_cases = 0;
+};
+/// Of chi and the D50 ratio at the crest; none unless there are three velocities.
+std::vector<VelocityTrend> velocity_trends(const std::vector<CaseResult>& cases);
 
 /// A difference that the thesis prints between two cases: `quantity` of `case_name` less that of `against`.
 struct Trend {

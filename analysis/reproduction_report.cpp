@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "analysis/outputs.h"
 #include "analysis/profile_chart.h"
@@ -34,8 +33,8 @@ const std::vector<FigureSpec>& figure_specs() {
       {"5.11", "cm_d50", "Canadian Malartic, D50, three sections", "d50", "D50 (m)", 3, 3, {"c1"}},
       {"5.12", "cm_chi", "Canadian Malartic, three sections", "chi", kChi, 3, 3, {"c1"}},
       {"5.12", "cm_chi6", "Canadian Malartic, six sections", "chi", kChi, 6, 0, {"c1"}},
-      {"5.13", "qb_d50", "Quebrada Blanca, D50, five sections", "d50", "D50 (m)", 5, 0, {"a3"}},
-      {"5.14", "qb_d80", "Quebrada Blanca, D80, five sections", "d80", "D80 (m)", 5, 0, {"a3"}},
+      {"5.13", "qb_d50", "Quebrada Blanca, D50, nine sections", "d50", "D50 (m)", 9, 0, {"a3"}},
+      {"5.14", "qb_d80", "Quebrada Blanca, D80, nine sections", "d80", "D80 (m)", 9, 0, {"a3"}},
       {"6.5", "height_chi", "Height of the bench", "chi", kChi, 6, 0, {"a1", "a2", "a3", "a4"}},
       {"6.5", "height_d50", "Height of the bench", "d50_rel", kD50, 6, 0, {"a1", "a2", "a3", "a4"}},
       {"6.6", "grading_chi", "Grading of the rock", "chi", kChi, 6, 0, {"a1", "c1"}},
@@ -97,16 +96,10 @@ ChartSeries ours(const CaseResult& result, const FigureSpec& spec, int colour) {
   ChartSeries series{result.name, ChartSeries::Kind::ours, colour, {}};
   static const char* const kCells[] = {"top", "middle", "bottom"};
   for (int k = 1; k <= spec.sections; ++k) {
-    ReferenceValue what;
-    what.case_name = fmt::format("{}sec", spec.sections);
-    what.case_name.insert(0, 1, '_');
-    what.quantity = spec.quantity;
-    what.section = spec.sections == 3 ? kCells[k - 1] : fmt::format("S{}", k);
-    what.dumps = spec.dumps;
-    std::vector<double> values;
-    for (const Outputs& seed : result.seeds)
-      if (const auto value = output_for(what, seed)) values.push_back(*value);
-    const MeanStd both = mean_std(values);
+    const PileValue what{spec.quantity, spec.sections == 3 ? kCells[k - 1] : fmt::format("S{}", k),
+                         spec.sections, spec.dumps};
+    const MeanStd both =
+        spread_of(result.runs.seeds, [&](const Outputs& seed) { return output_for(what, seed); });
     if (both.n > 0) series.points.push_back({x_over_l(k, spec.sections), both.mean, both.std});
   }
   return series;
@@ -181,27 +174,51 @@ std::string limits(const std::vector<CaseResult>& cases) {
 
 std::string signs_table(const std::vector<CaseResult>& cases) {
   std::string rows;
-  for (const CaseResult& each : cases) {
-    std::vector<double> crest, toe;
-    for (const Outputs& seed : each.seeds) {
-      if (!seed.contains("chi_S1") || !seed.contains("chi_S6")) continue;
-      crest.push_back(seed.at("chi_S1"));
-      toe.push_back(seed.at("chi_S6"));
-    }
-    const MeanStd a = mean_std(crest), b = mean_std(toe);
-    if (a.n == 0) continue;
-    const auto right =
-        static_cast<int>(std::count_if(crest.begin(), crest.end(), [](double x) { return x < 0; })) +
-        static_cast<int>(std::count_if(toe.begin(), toe.end(), [](double x) { return x > 0; }));
+  for (const SegregationSigns& each : segregation_signs(cases)) {
+    const auto p = [](const MeanStd& chi, double value) {
+      return chi.n == 1 ? std::string("one seed") : html_escaped(p_text(value));
+    };
     rows += fmt::format(
-        "<tr><td class=\"word\">{}</td><td>{}</td><td>{}</td><td>{} of {}</td></tr>\n",
-        html_escaped(each.name), value_cell("chi", a.mean, a.n > 1 ? std::optional(a.std) : std::nullopt, ""),
-        value_cell("chi", b.mean, b.n > 1 ? std::optional(b.std) : std::nullopt, ""), right, 2 * a.n);
+        "<tr><td class=\"word\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{} of "
+        "{}</td><td>{}</td>"
+        "<td>{}</td></tr>\n",
+        html_escaped(each.case_name), value_cell("chi", each.crest, ""), p(each.crest, each.p_crest),
+        value_cell("chi", each.toe, ""), p(each.toe, each.p_toe), each.as_expected, each.signs,
+        value_cell("chi", each.zero, ""), each.printed_zero ? number_text(*each.printed_zero, 2) : "–");
   }
   if (rows.empty()) return rows;
-  return "<h2>Fine at the crest, coarse at the toe</h2>\n<div class=\"wide\"><table><thead><tr><th "
-         "class=\"word\">Case</th><th>χ of S1</th><th>χ of S6</th><th>signs as expected, of all "
-         "seeds</th></tr></thead><tbody>\n" +
+  return "<h2>Fine at the crest, coarse at the toe</h2>\n<p>p is the probability that seeds alone make so "
+         "clear "
+         "a sign, if chi is 0 (Student's t test over the seeds, one-sided: t = mean √n / deviation with n − "
+         "1 "
+         "degrees of freedom).</p>\n<div class=\"wide\"><table><thead><tr><th class=\"word\">Case</th><th>χ "
+         "of "
+         "S1</th><th>p of χ &lt; 0</th><th>χ of S6</th><th>p of χ &gt; 0</th><th>signs as expected, of all "
+         "seeds</th><th>x/L where χ changes sign</th><th>printed</th></tr></thead><tbody>\n" +
+         rows + "</tbody></table></div>\n";
+}
+
+std::string velocity_table(const std::vector<CaseResult>& cases) {
+  std::string rows;
+  for (const VelocityTrend& each : velocity_trends(cases))
+    rows += fmt::format(
+        "<tr><td class=\"word\">{}</td><td class=\"word\">{}</td><td>{}</td><td>{}<small>{} to "
+        "{}</small></td><td>{}</td><td>{}</td><td>{}<small>{} cases</small></td></tr>\n",
+        html_escaped(quantity_in_words(each.value.quantity)), each.value.section, each.runs,
+        decimals_text(each.here.slope, 2), decimals_text(each.here.low, 2), decimals_text(each.here.high, 2),
+        html_escaped(p_text(each.here.p)), html_escaped(p_text(each.order.p)),
+        decimals_text(each.printed_slope, 2), each.printed_cases);
+  if (rows.empty()) return rows;
+  return "<h2>Velocity of the blade</h2>\n<p>Least squares over all seeds of all cases of push dumping, with "
+         "the "
+         "95 % interval of the slope and p of no slope (t, n − 2 degrees of freedom); p of no order by the "
+         "test "
+         "of Jonckheere and Terpstra (normal approximation with ties). Both are two-sided. PFC3D's slope is "
+         "that "
+         "of its printed means.</p>\n<div class=\"wide\"><table><thead><tr><th "
+         "class=\"word\">Quantity</th><th "
+         "class=\"word\">Section</th><th>Runs</th><th>Slope per m/s</th><th>p of the slope</th><th>p of the "
+         "order</th><th>PFC3D's slope</th></tr></thead><tbody>\n" +
          rows + "</tbody></table></div>\n";
 }
 
@@ -255,8 +272,8 @@ std::string trends_table(const std::vector<TrendComparison>& trends) {
         "{}\">{}</td><td class=\"word\">{}</td></tr>\n",
         html_escaped(t.case_name), html_escaped(t.against), html_escaped(quantity_in_words(t.quantity)),
         html_escaped(t.section), t.bound ? "|·| ≤ " : "", text(t.difference), text(row.difference),
-        text(row.low), text(row.high), row.p < 0.001 ? "&lt; 0.001" : decimals_text(row.p, 3),
-        look(row.verdict).style, look(row.verdict).words, html_escaped(t.source));
+        text(row.low), text(row.high), html_escaped(p_text(row.p)), look(row.verdict).style,
+        look(row.verdict).words, html_escaped(t.source));
   }
   return out + "</tbody></table></div>\n";
 }
@@ -270,17 +287,17 @@ void write_reproduction(const std::vector<CaseResult>& cases, const std::vector<
   std::string body = "<h2>What agrees and what does not</h2>\n<ul>\n";
   for (const std::string& line : reproduction_in_words(cases, trends))
     body += fmt::format("<li>{}</li>\n", html_escaped(line));
-  body += "</ul>\n" + limits(cases) + signs_table(cases) + trends_table(trends);
+  body += "</ul>\n" + limits(cases) + signs_table(cases) + velocity_table(cases) + trends_table(trends);
   body += figures("Figures", draw_figures(cases, pictures));
   body += "<h2>Every printed value</h2>\n";
   double seconds = 0;
   std::size_t runs = 0;
   for (const CaseResult& each : cases) {
-    seconds += each.wall_seconds;
-    runs += each.seeds.size();
-    if (each.seeds.empty()) continue;
+    seconds += each.runs.wall_seconds;
+    runs += each.runs.seeds.size();
+    if (each.runs.seeds.empty()) continue;
     body += fmt::format("<h3>{}: {}, {} seed{}</h3>\n", html_escaped(each.name), html_escaped(each.title),
-                        each.seeds.size(), each.seeds.size() == 1 ? "" : "s");
+                        each.runs.seeds.size(), each.runs.seeds.size() == 1 ? "" : "s");
     body += each.comparison.empty() ? "<p>Nothing is printed for this case alone.</p>\n"
                                     : comparison_table(each.comparison);
   }

@@ -51,7 +51,7 @@ struct SeedResult {
 /// A printed value of the thesis.
 struct ReferenceValue {
   std::string case_name;  ///< A1, cm_field_3sec, lab_repose ...
-  std::string quantity;   ///< chi, d50, d50_rel, mass_t, angle
+  std::string quantity;   ///< chi, d50, d50_rel, mass_t, angle; chi_scatter: deviation of chi between repeats
   std::string section;    ///< S1..S6, top|middle|bottom, or whole
   std::string kind;       ///< pfc3d | measured
   double value = 0;
@@ -60,12 +60,12 @@ struct ReferenceValue {
   std::string relation;                        ///< eq, approx, lt, gt, range ...
   std::string source;                          ///< table or line of the source
   std::optional<double> upper = std::nullopt;  ///< of a range; its lower end is `value`
-  double rounding = 0;                         ///< half of the last digit printed
+  double rounding = 0;                         ///< half of the last digit printed; 0: derived
   int dumps = 0;  ///< number of dumps in the pile it was read from; 0: not stated
 };
 
 /// Into how many sections the slope of a printed case was cut: told by the names top, middle, bottom (3) or
-/// by the case's name (cm_field_3sec, qb_field_5sec); 6 otherwise (thesis, chapter 6).
+/// by the case's name (cm_field_3sec, qb_field_9sec); 6 otherwise (thesis, chapter 6).
 int section_count(const ReferenceValue& reference);
 
 /// What a printed number says of the mean: the value itself, a bound, two bounds, or (medians) nothing.
@@ -84,6 +84,8 @@ struct Comparison {
   /// none is printed, the deviation of rounding stands for it (half of the last digit over sqrt 3). Of a
   /// bound: how far it is passed, 0 if it is kept.
   std::optional<double> z;
+  /// The pile with as many dumps as the printed one was not kept; the finished one stands for it.
+  bool finished_instead = false;
 };
 
 /// A whole run: everything that summary.json and the report say.
@@ -96,8 +98,9 @@ struct RunResult {
   double wall_seconds = 0;         ///< of the whole command
 };
 
-/// Reads assets/reference/results.csv (case,quantity,section,kind,value,std,unit,relation,source,dumps). A
-/// `min` and a `max` of the same become one `range`.
+/// Reads assets/reference/results.csv
+/// (case,quantity,section,kind,value,std,unit,relation,source,dumps,rounding). A `min` and a `max` of the
+/// same become one `range`.
 std::vector<ReferenceValue> read_reference(const std::filesystem::path& file);
 
 /// Holds the numbers of a run's seeds against reference cases (output_for in outputs.h says which number
@@ -106,6 +109,9 @@ std::vector<ReferenceValue> read_reference(const std::filesystem::path& file);
 std::vector<Comparison> compare_with_reference(const std::vector<Outputs>& seeds,
                                                const std::vector<ReferenceValue>& reference,
                                                const std::vector<std::string>& cases);
+
+/// What limits a comparison, a line each: cases held against another pile than the printed one.
+std::vector<std::string> comparison_notes(const std::vector<Comparison>& comparison);
 
 /// Mean and standard deviation (n - 1) over seeds; std is NaN for one value. NaN values are left out.
 struct MeanStd {

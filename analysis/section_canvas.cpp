@@ -12,8 +12,6 @@
 namespace scree {
 namespace {
 
-constexpr double kPixels = 2000, kMostPixelsUp = 1400;  // of the drawn area, all panels together
-constexpr double kLeft = 170, kRight = 300, kBelow = 140, kAbove = 90;  // pixels around the panels
 constexpr double kGap = 110, kNote = 44;  // pixels between panels, of a line of text
 constexpr double kStrays = 0.002;         // of the mass, on either side
 constexpr unsigned kRim = 0x202020, kFixedGrey = 0xd4d4d4;
@@ -31,6 +29,23 @@ std::string ground_line(const VerticalSection& section, const SectionFrame& fram
 }
 
 }  // namespace
+
+std::string sheet_head(double width, double height) {
+  return fmt::format(
+      "set terminal pngcairo noenhanced size {:.0f},{:.0f} font 'DejaVu Sans,11' fontscale 2 linewidth 2\n"
+      "set minussign\nset border 3 lc rgb '#777777'\nset tics nomirror out scale 0.6 tc rgb '#333333'\n",
+      width, height);
+}
+
+std::string panel_place(const SectionFrame& frame, double width, double height, double bottom, double up) {
+  return fmt::format(
+      "set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\nset bmargin at screen {:.5f}\n"
+      "set tmargin at screen {:.5f}\nset xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\n"
+      "set colorbox user origin screen {:.5f}, screen {:.5f} size screen {:.5f}, screen {:.5f}\n",
+      kSheet.left / width, 1 - kSheet.right / width, bottom / height, (bottom + up) / height, frame.left,
+      frame.right, frame.low, frame.high, 1 - (kSheet.right - 60) / width, bottom / height, 36 / width,
+      up / height);
+}
 
 SectionFrame frame_of(const std::vector<Grain>& grains, const VerticalSection& section) {
   std::vector<WeighedValue> across;
@@ -69,21 +84,18 @@ SectionCanvas::SectionCanvas(const SectionFrame& frame, int panels, const Vertic
     : frame_(frame), panels_(panels), section_(section), notes_(notes) {
   const double across = frame.right - frame.left, up = frame.high - frame.low;
   // Several panels may be as high together as two single ones.
-  pixels_a_metre_ = std::min(kPixels / across, (panels > 1 ? 2 : 1) * kMostPixelsUp / (up * panels));
-  width_ = kLeft + kRight + pixels_a_metre_ * across;
-  height_ = kBelow + kAbove + panels * pixels_a_metre_ * up + (panels - 1) * kGap +
+  pixels_a_metre_ =
+      std::min(kSheet.most_across / across, (panels > 1 ? 2 : 1) * kSheet.most_up / (up * panels));
+  width_ = kSheet.left + kSheet.right + pixels_a_metre_ * across;
+  height_ = kSheet.below + kSheet.above + panels * pixels_a_metre_ * up + (panels - 1) * kGap +
             kNote * static_cast<double>(notes.size());
 }
 
 std::string SectionCanvas::head() const {
-  std::string out = fmt::format(
-      "set terminal pngcairo noenhanced size {:.0f},{:.0f} font 'DejaVu Sans,11' fontscale 2 linewidth 2\n"
-      "set minussign\nset border 3 lc rgb '#777777'\nset tics nomirror out scale 0.6 tc rgb '#333333'\n"
-      "set clip one\nset multiplot\n",
-      width_, height_);
+  std::string out = sheet_head(width_, height_) + "set clip one\nset multiplot\n";
   for (std::size_t k = 0; k < notes_.size(); ++k)
     out += fmt::format("set label {} {} at screen {:.5f}, screen {:.5f} left tc rgb '#444444'\n", k + 1,
-                       gnuplot_quoted(notes_[k]), kLeft / width_,
+                       gnuplot_quoted(notes_[k]), kSheet.left / width_,
                        kNote * (static_cast<double>(notes_.size() - k) - 0.4) / height_);
   return out;
 }
@@ -91,23 +103,13 @@ std::string SectionCanvas::head() const {
 std::string SectionCanvas::panel(int index, const std::string& title, const std::string& colour_label) const {
   const double up = pixels_a_metre_ * (frame_.high - frame_.low);
   const double bottom =
-      kBelow + kNote * static_cast<double>(notes_.size()) + (panels_ - 1 - index) * (up + kGap);
+      kSheet.below + kNote * static_cast<double>(notes_.size()) + (panels_ - 1 - index) * (up + kGap);
   const bool last = index == panels_ - 1;
-  std::string out = fmt::format(
-      "set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\nset bmargin at screen {:.5f}\nset tmargin "
-      "at "
-      "screen {:.5f}\n",
-      kLeft / width_, 1 - kRight / width_, bottom / height_, (bottom + up) / height_);
-  out += fmt::format("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\n", frame_.left, frame_.right,
-                     frame_.low, frame_.high);
+  std::string out = panel_place(frame_, width_, height_, bottom, up);
   out += fmt::format("set xlabel {}\nset ylabel 'height, z (m)'\nset title {} offset 0,-0.3\n",
                      last ? (section_.bench ? "'distance from the crest, x (m)'" : "'x (m)'") : "''",
                      gnuplot_quoted(title));
-  out += fmt::format(
-      "set format x '{}'\nset cblabel {}\nset colorbox user origin screen {:.5f}, screen {:.5f} size screen "
-      "{:.5f}, screen {:.5f}\n",
-      last ? "%g" : "", gnuplot_quoted(colour_label), 1 - (kRight - 60) / width_, bottom / height_,
-      36 / width_, up / height_);
+  out += fmt::format("set format x '{}'\nset cblabel {}\n", last ? "%g" : "", gnuplot_quoted(colour_label));
   return out + "unset arrow\n" + ground_line(section_, frame_);
 }
 
@@ -146,12 +148,6 @@ double round_number_above(double least) {
   for (const double step : {1.0, 2.0, 5.0})
     if (step * power >= least * (1 - 1e-9)) return step * power;
   return 10 * power;
-}
-
-std::string viridis_palette() {
-  std::string out = "set palette defined (";
-  for (int k = 0; k <= 8; ++k) out += fmt::format("{}{} '#{:06x}'", k == 0 ? "" : ", ", k, viridis(k / 8.0));
-  return out + ")\n";
 }
 
 }  // namespace scree

@@ -14,6 +14,17 @@ struct SectionFrame {
   double left = 0, right = 0, low = 0, high = 0;
 };
 
+/// Pixels of a picture, which is twice screen size: of the drawn area, all panels together, and around it.
+inline constexpr struct {
+  double most_across = 2000, most_up = 1400, left = 170, right = 300, below = 140, above = 90;
+} kSheet;
+
+/// Gnuplot lines of the terminal and the look of axes, for a picture of this many pixels.
+std::string sheet_head(double width, double height);
+
+/// Gnuplot lines that place a panel and its colour scale on such a sheet: `bottom` and height `up` in pixels.
+std::string panel_place(const SectionFrame& frame, double width, double height, double bottom, double up);
+
 /// Room around the grains of the section and its bench. The outermost 0.2 % of the mass on either side do not
 /// widen it, so a stone that rolled far leaves the pile large. Throws std::invalid_argument when no grain
 /// lies in the section.
@@ -57,9 +68,6 @@ std::string plot_discs(double scale_value, const std::string& above = "");
 
 /// Where the cut lies, in words.
 std::string cut_words(const VerticalSection& section);
-
-/// The palette of viridis().
-std::string viridis_palette();
 
 /// The least of 1, 2, 5 times a power of ten that is not below `least` (above 0).
 double round_number_above(double least);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "analysis/welch.h"
 
@@ -38,10 +37,7 @@ std::optional<double> lateral(const Outputs& seed) {
 }
 
 MeanStd spread(const StudyOption& option, const StudyCriterion& criterion) {
-  std::vector<double> values;
-  for (const Outputs& seed : option.seeds)
-    if (const auto value = criterion.of(seed)) values.push_back(*value);
-  return mean_std(values);
+  return spread_of(option.runs.seeds, criterion.of);
 }
 
 }  // namespace
@@ -64,11 +60,13 @@ const std::vector<StudyCriterion>& study_criteria() {
 
 const StudyCriterion* study_criterion(const std::string& name) {
   const auto& all = study_criteria();
-  const auto found = std::find_if(all.begin(), all.end(), [&](const StudyCriterion& c) { return c.name == name; });
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const StudyCriterion& c) { return c.name == name; });
   return found == all.end() ? nullptr : &*found;
 }
 
-std::vector<StudyRank> rank_options(const std::vector<StudyOption>& options, const StudyCriterion& criterion) {
+std::vector<StudyRank> rank_options(const std::vector<StudyOption>& options,
+                                    const StudyCriterion& criterion) {
   std::vector<StudyRank> ranks;
   for (std::size_t k = 0; k < options.size(); ++k) {
     const MeanStd value = spread(options[k], criterion);
@@ -94,14 +92,11 @@ std::vector<std::string> study_in_words(const std::vector<StudyOption>& options,
                                         const StudyCriterion& criterion) {
   std::vector<std::string> lines;
   for (const StudyOption& option : options)
-    if (option.missing + option.failed + option.restless > 0)
-      lines.push_back(fmt::format("{}: {} runs done, {} not run, {} failed, {} left out because they did not come "
-                                  "to rest",
-                                  option.name, option.seeds.size(), option.missing, option.failed, option.restless));
+    if (!option.runs.complete()) lines.push_back(runs_in_words(option.name, option.runs));
   const std::vector<StudyRank> ranks = rank_options(options, criterion);
   for (const StudyRank& rank : ranks) {
-    const auto sharing =
-        std::count_if(ranks.begin(), ranks.end(), [&](const StudyRank& other) { return other.rank == rank.rank; });
+    const auto sharing = std::count_if(ranks.begin(), ranks.end(),
+                                       [&](const StudyRank& other) { return other.rank == rank.rank; });
     lines.push_back(fmt::format("{}. {}: {:.3g}{}{}", rank.rank, options[rank.option].name, rank.value.mean,
                                 rank.value.n > 1 ? fmt::format(" +- {:.2g}", rank.value.std) : "",
                                 sharing > 1 ? " (tie)" : ""));

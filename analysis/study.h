@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/results.h"
+#include "analysis/finished_runs.h"
 
 namespace scree {
 
@@ -14,8 +14,7 @@ struct StudyOption {
   std::string name;
   double tonnes_per_load = 0;
   std::optional<double> cost_per_t;  ///< of equipment, in the study's currency
-  std::vector<Outputs> seeds;        ///< of the runs that are done and came to rest
-  int failed = 0, missing = 0, restless = 0;
+  FinishedRuns runs;
 };
 
 /// What options are held against each other by; smaller is better for all of them.

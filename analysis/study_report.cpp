@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "analysis/profile_chart.h"
 #include "analysis/report_page.h"
@@ -12,10 +11,6 @@
 namespace scree {
 namespace {
 
-std::string cell(const MeanStd& value) {
-  return value_cell("", value.mean, value.n > 1 ? std::optional(value.std) : std::nullopt, "");
-}
-
 std::string ranking(const std::vector<StudyOption>& options, const StudyCriterion& criterion,
                     const std::string& currency) {
   std::string rows;
@@ -23,8 +18,9 @@ std::string ranking(const std::vector<StudyOption>& options, const StudyCriterio
     const StudyOption& option = options[rank.option];
     rows += fmt::format(
         "<tr><td>{}</td><td class=\"word\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-        rank.rank, html_escaped(option.name), cell(rank.value), rank.p < 1 ? decimals_text(rank.p, 2) : "–",
-        number_text(option.tonnes_per_load), option.cost_per_t ? number_text(*option.cost_per_t) : "–");
+        rank.rank, html_escaped(option.name), value_cell("", rank.value, ""),
+        rank.p < 1 ? decimals_text(rank.p, 2) : "–", number_text(option.tonnes_per_load),
+        option.cost_per_t ? number_text(*option.cost_per_t) : "–");
   }
   return fmt::format(
       "<div class=\"wide\"><table><thead><tr><th>Rank</th><th class=\"word\">Option</th><th>{}</th><th>p "
@@ -46,9 +42,9 @@ std::string other_criteria(const std::vector<StudyOption>& options, const StudyC
     for (const auto& ranks : all) {
       const auto found =
           std::find_if(ranks.begin(), ranks.end(), [&](const StudyRank& rank) { return rank.option == k; });
-      rows += found == ranks.end()
-                  ? "<td>–</td>"
-                  : fmt::format("<td>{} <small>rank {}</small></td>", cell(found->value), found->rank);
+      rows += found == ranks.end() ? "<td>–</td>"
+                                   : fmt::format("<td>{} <small>rank {}</small></td>",
+                                                 value_cell("", found->value, ""), found->rank);
     }
     rows += "</tr>\n";
   }
@@ -68,15 +64,11 @@ Picture draw_profiles(const std::vector<StudyOption>& options, const std::filesy
   for (std::size_t k = 0; k < options.size(); ++k) {
     ChartSeries series{options[k].name, ChartSeries::Kind::ours, static_cast<int>(k), {}};
     int sections = 0;
-    for (const Outputs& seed : options[k].seeds)
+    for (const Outputs& seed : options[k].runs.seeds)
       if (const auto found = seed.find("sections"); found != seed.end())
         sections = static_cast<int>(found->second);
     for (int s = 1; s <= sections; ++s) {
-      std::vector<double> values;
-      for (const Outputs& seed : options[k].seeds)
-        if (const auto found = seed.find(fmt::format("chi_S{}", s)); found != seed.end())
-          values.push_back(found->second);
-      const MeanStd both = mean_std(values);
+      const MeanStd both = spread_of(options[k].runs.seeds, fmt::format("chi_S{}", s));
       if (both.n > 0) series.points.push_back({(2.0 * s - 1) / (2.0 * sections), both.mean, both.std});
     }
     if (!series.points.empty()) chart.series.push_back(std::move(series));
@@ -100,7 +92,7 @@ void write_study(const std::string& title, const std::string& currency,
     body += fmt::format("<li>{}</li>\n", html_escaped(line));
   body += "</ul>\n" + ranking(options, criterion, currency) + other_criteria(options, criterion);
   if (std::any_of(options.begin(), options.end(),
-                  [](const StudyOption& each) { return !each.seeds.empty(); }))
+                  [](const StudyOption& each) { return !each.runs.seeds.empty(); }))
     body += "<h2>Chart</h2>\n" + figure(draw_profiles(options, pictures));
   write_text_file(folder / "report.html",
                   html_page(title, fmt::format("ranked by {}", criterion.words), body));

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "analysis/pictures.h"
+#include "analysis/section_canvas.h"
 
 namespace scree {
 namespace {
@@ -16,12 +17,6 @@ constexpr int kWidth = 640, kHeight = 480;
 std::string titles(const std::string& title, const std::string& x, const std::string& y) {
   return fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", gnuplot_quoted(title), gnuplot_quoted(x),
                      gnuplot_quoted(y));
-}
-
-/// 1, 2 or 5 times a power of ten, near a number.
-double round_step(double rough) {
-  const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  return power * (rough / power < 1.5 ? 1 : rough / power < 3.5 ? 2 : rough / power < 7.5 ? 5 : 10);
 }
 
 }  // namespace
@@ -82,22 +77,20 @@ void draw(const ContourMap& picture, const std::filesystem::path& file) {
   const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10((high - low) / 10))));
   const std::size_t nodes = map.x.size() * map.y.size();
   const bool few = nodes <= 100;  // the numbers have room
-  const double spacing = round_step((high - low) / 12);
+  const double spacing = round_number_above((high - low) / 18);
   std::string script = blocks_of(map, "1", spacing, low, high, picture.target, decimals);
   if (picture.beside) script += blocks_of(*picture.beside, "2", spacing, low, high, picture.target, decimals);
 
-  std::string palette;
-  for (int k = 0; k <= 8; ++k)
-    palette += fmt::format("{}{} '#{:06x}'", k == 0 ? "" : ", ", k, viridis(k / 8.0));
   const int fine = nodes < 400 ? 10 : 1;  // pieces of a cell
   script += chart_terminal(picture.beside ? 2 * kWidth - 60 : kWidth, kHeight);
+  script += viridis_palette();
   script += fmt::format(
-      "set palette defined ({})\nset cblabel {}\nset cbrange [{}:{}]\nset view map\nset pm3d interpolate "
+      "set cblabel {}\nset cbrange [{}:{}]\nset view map\nset pm3d interpolate "
       "{},{}\nunset key\nunset grid\n"
       "set style textbox opaque fillcolor '#ffffff' noborder margins 0.6,0.4\nset xrange [{}:{}]\nset yrange "
       "[{}:{}]\n",
-      palette, gnuplot_quoted(picture.value_label), low, high, fine, fine, map.x.front(), map.x.back(),
-      map.y.front(), map.y.back());
+      gnuplot_quoted(picture.value_label), low, high, fine, fine, map.x.front(), map.x.back(), map.y.front(),
+      map.y.back());
   const auto panel = [&](const char* name, const std::string& title) {
     script += titles(title, picture.x_label, picture.y_label);
     script += fmt::format(

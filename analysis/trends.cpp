@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
-#include "analysis/csv_table.h"
 #include "analysis/outputs.h"
 #include "analysis/reproduction.h"
 #include "analysis/welch.h"
+#include "sim/material/csv_table.h"
 
 namespace scree {
 namespace {
@@ -24,14 +23,9 @@ const CaseResult* find(const std::vector<CaseResult>& cases, const std::string& 
 }
 
 MeanStd spread(const CaseResult& result, const Trend& trend) {
-  ReferenceValue what;
-  what.case_name = trend.case_name;
-  what.quantity = trend.quantity;
-  what.section = trend.section;
-  std::vector<double> values;
-  for (const Outputs& seed : result.seeds)
-    if (const auto value = output_for(what, seed)) values.push_back(*value);
-  return mean_std(values);
+  return spread_of(result.runs.seeds, [&](const Outputs& seed) {
+    return output_for({trend.quantity, trend.section}, seed);
+  });
 }
 
 TrendVerdict judged(const TrendComparison& c) {

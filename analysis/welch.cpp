@@ -15,7 +15,8 @@ Welch welch(const MeanStd& a, const MeanStd& b) {
   const double freedom = (va + vb) * (va + vb) / (va * va / (a.n - 1) + vb * vb / (b.n - 1));
   const boost::math::students_t distribution(freedom);
   test.t_95 = boost::math::quantile(distribution, 0.975);
-  test.p = 2 * boost::math::cdf(boost::math::complement(distribution, std::abs(test.difference) / test.error));
+  test.p =
+      2 * boost::math::cdf(boost::math::complement(distribution, std::abs(test.difference) / test.error));
   test.known = true;
   return test;
 }

@@ -8,10 +8,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "analysis/outputs.h"
 #include "analysis/sweep_chart.h"
 #include "cli/commands.h"
 #include "cli/ensemble/equivalence_fit.h"
+#include "cli/ensemble/output_scope.h"
 #include "cli/ensemble/run_request.h"
 #include "cli/ensemble_console.h"
 #include "cli/output_folder.h"
@@ -54,8 +54,7 @@ std::string refusal(const scree::CalibrationSpec& spec) {
           Eigen::VectorXd::Constant(static_cast<Eigen::Index>(spec.parameters.size()), share);
       const scree::ScenarioResult loaded = scenario_at(spec, target.scenario, values_at(spec, end));
       if (!loaded.errors.empty()) return loaded.errors.front().text();
-      const std::string type(scree::experiment_type(loaded.scenario));
-      if (const std::string why = scree::why_not_given(type, target.output); !why.empty())
+      if (const std::string why = scree::why_not_given(loaded.scenario, target.output); !why.empty())
         return fmt::format("output '{}': {}", target.output, why);
     }
   }
@@ -299,8 +298,7 @@ int run_equivalence(const CalibrateOptions& options) {
     fmt::print(stderr, "{}\n", first.errors.front().text());
     return kBadInput;
   }
-  const std::string type(scree::experiment_type(first.scenario));
-  if (const std::string why = scree::why_not_given(type, spec.output); !why.empty()) {
+  if (const std::string why = scree::why_not_given(first.scenario, spec.output); !why.empty()) {
     fmt::print(stderr, "output '{}': {}\n", spec.output, why);
     return kBadInput;
   }

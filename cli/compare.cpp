@@ -1,7 +1,6 @@
 // scree compare: a finished run beside reference values.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <set>
 
 #include "analysis/summary.h"
@@ -37,5 +36,6 @@ int run_compare(const std::filesystem::path& dir, const std::vector<std::string>
   const auto comparison = scree::compare_with_reference(run.outputs, reference, chosen);
   if (comparison.empty()) fmt::print("none of the values of these cases is in this run\n");
   scree::print_comparison(comparison);
+  for (const std::string& note : scree::comparison_notes(comparison)) fmt::print("note: {}\n", note);
   return kOk;
 }

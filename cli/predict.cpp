@@ -6,12 +6,10 @@
 #include <map>
 
 #include "analysis/emulator.h"
-#include "analysis/outputs.h"
 #include "cli/commands.h"
-#include "cli/ensemble/run_request.h"
-#include "cli/ensemble/sweep_file.h"
+#include "cli/ensemble/output_scope.h"
+#include "cli/ensemble/sweep_results.h"
 #include "cli/ensemble_console.h"
-#include "scree_version.h"
 
 namespace {
 
@@ -36,8 +34,7 @@ int run_predict(const PredictOptions& options) {
   if (!store) return kBadInput;
   const std::string output = options.output.empty() ? "angle_deg" : options.output;
 
-  const std::string type(scree::experiment_type(sweep.points.front().scenario));
-  if (const std::string why = scree::why_not_given(type, output); !why.empty())
+  if (const std::string why = scree::why_not_given(sweep, output); !why.empty())
     return refuse(fmt::format("--output {}: {}", output, why));
   if (std::ssize(sweep.parameters) > scree::Emulator::kMostDimensions)
     return refuse(fmt::format("{} parameters; {} are the most for a prediction", sweep.parameters.size(),
@@ -46,7 +43,9 @@ int run_predict(const PredictOptions& options) {
   std::vector<Axis> axes(sweep.parameters.size());
   std::vector<std::vector<double>> at;
   std::vector<double> values;
-  for (const scree::SweepPoint& point : sweep.points) {
+  for (const scree::PointResults& results :
+       scree::look_up(sweep, scree::requests_of(sweep, asset_dir()), *store)) {
+    const scree::SweepPoint& point = *results.point;
     std::vector<double> numbers;
     for (std::size_t k = 0; k < axes.size(); ++k) {
       const auto number = number_of(point.values[k]);
@@ -55,12 +54,10 @@ int run_predict(const PredictOptions& options) {
                                   sweep.parameters[k], point.values[k]));
       numbers.push_back(*number);
     }
-    for (const std::uint64_t seed : point.scenario.seeds) {
-      const auto found =
-          store->find(scree::run_request(point.scenario, seed, scree::results_version(), asset_dir()).key);
-      if (!found || !found->at_rest() || !found->outputs.contains(output)) continue;
+    for (const scree::Outputs& seed : scree::finished(results).seeds) {
+      if (!seed.contains(output)) continue;
       at.push_back(numbers);
-      values.push_back(found->outputs.at(output));
+      values.push_back(seed.at(output));
       for (std::size_t k = 0; k < axes.size(); ++k) {
         axes[k].low = std::min(axes[k].low, numbers[k]);
         axes[k].high = std::max(axes[k].high, numbers[k]);

@@ -45,11 +45,10 @@ std::vector<scree::CaseResult> results_of(const std::vector<scree::PointResults>
     scree::CaseResult result;
     result.name = point.point->values.front();
     result.title = scenario.title;
-    scree::FinishedRuns runs = scree::finished(point);
-    result.seeds = std::move(runs.seeds);
-    result.failed = runs.failed, result.missing = runs.missing, result.restless = runs.restless;
-    result.wall_seconds = runs.wall_seconds;
-    for (const scree::Outputs& seed : result.seeds) {
+    if (const auto* push = std::get_if<scree::PushDump>(&scenario.experiment))
+      result.blade_velocity = push->blade.velocity;
+    result.runs = scree::finished(point);
+    for (const scree::Outputs& seed : result.runs.seeds) {
       const auto number = [&](const char* name) {
         const auto found = seed.find(name);
         return found == seed.end() ? 0.0 : found->second;
@@ -57,7 +56,7 @@ std::vector<scree::CaseResult> results_of(const std::vector<scree::PointResults>
       result.largest_overlap = std::max(result.largest_overlap, number("largest_overlap_ratio"));
       result.lost_mass += number("lost_mass_t");
     }
-    result.comparison = scree::compare_with_reference(result.seeds, reference, scenario.compare);
+    result.comparison = scree::compare_with_reference(result.runs.seeds, reference, scenario.compare);
     cases.push_back(std::move(result));
   }
   return cases;
@@ -69,6 +68,7 @@ int run_reproduce(const ReproduceOptions& options) {
   const std::vector<fs::path> files = case_files(options.cases);
   if (files.empty()) return kBadInput;
   const scree::SweepResult loaded = scree::load_cases(files, options.seeds, asset_dir());
+  for (const std::string& warning : loaded.warnings) fmt::print(stderr, "warning: {}\n", warning);
   for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
   if (!loaded.errors.empty()) return kBadInput;
   const scree::Sweep& sweep = loaded.sweep;

@@ -142,6 +142,8 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
   if (const BenchSpec* bench = bench_of(scenario)) result.bench_height = bench->height;
   result.comparison = compare_with_reference(outputs_of(result.seeds), reference, scenario.compare);
 
+  for (std::string& note : comparison_notes(result.comparison)) result.notes.push_back(std::move(note));
+
   double overlap = 0, lost = 0, mass = 0, left_out = 0;
   std::int64_t squeezed = 0, crowded = 0;
   std::int64_t lost_count = 0;

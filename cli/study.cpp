@@ -21,9 +21,7 @@ std::vector<scree::StudyOption> options_of(const scree::Study& study,
     option.name = points[k].point->values.front();
     option.tonnes_per_load = study.options[k].tonnes_per_load;
     option.cost_per_t = study.options[k].cost_per_t;
-    scree::FinishedRuns runs = scree::finished(points[k]);
-    option.seeds = std::move(runs.seeds);
-    option.failed = runs.failed, option.missing = runs.missing, option.restless = runs.restless;
+    option.runs = scree::finished(points[k]);
     options.push_back(std::move(option));
   }
   return options;

@@ -5,12 +5,11 @@
 #include <cmath>
 #include <set>
 
-#include "analysis/outputs.h"
 #include "analysis/sweep_chart.h"
 #include "cli/commands.h"
+#include "cli/ensemble/output_scope.h"
 #include "cli/ensemble/sweep_results.h"
 #include "cli/ensemble_console.h"
-#include "scree_version.h"
 
 namespace fs = std::filesystem;
 using scree::PointResults;
@@ -141,7 +140,7 @@ int show(const SweepOptions& options, const scree::Sweep& sweep, const std::vect
     print_failed(sweep, points);
     return kOk;
   }
-  const std::vector<std::string> shown = options.output.empty() ? main_outputs(scree::outputs_of(points))
+  const std::vector<std::string> shown = options.output.empty() ? main_outputs(scree::output_names(points))
                                                                 : std::vector<std::string>{options.output};
   const auto reference = scree::read_reference(asset_dir() / "reference" / "results.csv");
   std::vector<scree::SweepComparison> comparisons;
@@ -168,9 +167,8 @@ int run_sweep(const SweepOptions& options) {
   for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
   if (!loaded.errors.empty()) return kBadInput;
   const scree::Sweep& sweep = loaded.sweep;
-  const std::string type(scree::experiment_type(sweep.points.front().scenario));
   if (!options.output.empty())
-    if (const std::string why = scree::why_not_given(type, options.output); !why.empty()) {
+    if (const std::string why = scree::why_not_given(sweep, options.output); !why.empty()) {
       fmt::print(stderr, "--output {}: {}\n", options.output, why);
       return kBadInput;
     }

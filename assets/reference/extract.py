@@ -7,6 +7,7 @@ TABLES is the folder of CSV tables extracted from the thesis; OUTPUT defaults to
 Writes results.csv and trends.csv (SI units; columns in README.md) and copies the tables that the tests read as they are.
 """
 import csv
+import itertools
 import pathlib
 import re
 import shutil
@@ -19,36 +20,48 @@ HEIGHTS = ['A1', 'A2', 'A3', 'A4']
 SPACINGS = ['lateral_S4', 'lateral_S8', 'lateral_S12']
 # Names of the tables and the cases they speak of.
 CASES = {name: [name] for name in ['A1', 'A3', 'A4', 'B1', 'C1', 'D1', 'D2', 'D6', *SPACINGS, 'cm_field_3sec',
-                                   'cm_field_6sec', 'qb_field_5sec', 'lab_segregation']}
+                                   'cm_field_6sec', 'lab_segregation']}
 CASES |= {'A1-A4': HEIGHTS, 'A1_D2': ['A1', 'D2'], 'D1-D6': ['D%d' % k for k in range(1, 7)],
-          'lateral': SPACINGS, 'lateral_S4_S8_S12': SPACINGS}
+          'lateral': SPACINGS, 'lateral_S4_S8_S12': SPACINGS, 'qb_field_5sec': ['qb_field_9sec']}
+# Quebrada Blanca has nine sections, of which five are compared, 6, 14, 22, 30 and 34 m along the slope (line 1512):
+# the middles of nine sections of 4 m are 2, 6, 10 ... 34 m, so that these are the 2nd, 4th, 6th, 8th and 9th.
+PLACES = {'qb_field_5sec': {'S1': 'S2', 'S2': 'S4', 'S3': 'S6', 'S4': 'S8', 'S5': 'S9'}}
 # Printed values that others of the source contradict.
 CONTRADICTED = [('1810', 'A1-A4', 'chi', 'S6')]
-# Smallest and largest deviations between repeats are no values of a section.
 QUANTITIES = {'chi': ['chi'], 'd10': ['d10'], 'd50': ['d50'], 'd80': ['d80'], 'd10_rel': ['d10_rel'],
               'd50_rel': ['d50_rel'], 'd10_d50_d90_rel': ['d10_rel', 'd50_rel', 'd90_rel'],
               'mass_in_section': ['mass_t'], 'share_d_gt_1m': ['share_above_1m'],
               'share_d_gt_1m_orig': ['share_above_1m_orig'], 'xl_chi_zero': ['xl_chi_zero'],
-              'bottom_width_from_point_1': ['toe_width'], 'chi_range': ['lateral_chi_range']}
+              'bottom_width_from_point_1': ['toe_width'], 'chi_range': ['lateral_chi_range'],
+              # Deviations between repeats.
+              'chi_std': ['chi_scatter'], 'd10_rel_std': ['d10_rel_scatter'], 'd50_rel_std': ['d50_rel_scatter'],
+              'd90_rel_std': ['d90_rel_scatter']}
+# Line 1914 speaks of the direction along the crest, where its neighbours have no deviations between repeats.
+ACROSS = {('1914', 'chi_std'): 'lateral_chi_std'}
 UNITS = {'mm': ('m', 1e-3), 'cm': ('m', 1e-2), 'm': ('m', 1), 't': ('t', 1), 'pct': ('-', 1e-2), '-': ('-', 1),
          'deg': ('deg', 1)}
 LOW, HIGH = ('gt', 'min'), ('lt', 'le', 'max')
 SECTION = re.compile(r'S\d|top|middle|bottom|whole')
-COLUMNS = ['case', 'quantity', 'section', 'kind', 'value', 'std', 'unit', 'relation', 'source', 'dumps']
+SECTIONS = re.compile(r'S(\d)-S(\d)')
+COLUMNS = ['case', 'quantity', 'section', 'kind', 'value', 'std', 'unit', 'relation', 'source', 'dumps', 'rounding']
 # Cases of chapter 5 under their names in simulation_cases.csv.
-SIMULATED_AS = {'cm_field_3sec': 'validation_CM', 'qb_field_5sec': 'validation_QB'}
+SIMULATED_AS = {'cm_field_3sec': 'validation_CM', 'qb_field_9sec': 'validation_QB'}
 
 
 class Results:
     """One row a (case, quantity, section, kind, relation); of repeats the first with a deviation stays, of bounds
     the closest."""
 
-    def __init__(self, dumps):
+    def __init__(self, cases):
         self.rows = {}
-        self.dumps = dumps  # simulated case -> number of dumps
+        self.dumps = {r['case']: r['dumps'] for r in cases}  # of simulated cases
+        self.repeats = {r['case']: int(r['repeats']) for r in cases if r['repeats']}
 
     def add(self, case, quantity, section, kind, value, std, unit, relation, source):
+        """`value` as text if it is printed so; numbers are derived and have no rounding."""
         unit, factor = UNITS[unit]
+        rounding = half_of_last_digit(value) if isinstance(value, str) else None
+        value = float(value)
         place = (case, quantity, section, kind)
         side = 'low' if relation in LOW else 'high' if relation in HIGH else relation
         key = place + ('eq' if relation in ('eq', 'approx', 'derived') else side,)
@@ -62,12 +75,19 @@ class Results:
             return
         number = lambda x: '' if x is None else '%.6g' % (x * factor)
         self.rows[key] = dict(zip(COLUMNS, (case, quantity, section, kind, number(value), number(std), unit, relation,
-                                            source, self.dumps.get(SIMULATED_AS.get(case, case), '') if kind == 'pfc3d' else '')))
+                                            source, self.dumps.get(SIMULATED_AS.get(case, case), '') if kind == 'pfc3d' else '',
+                                            number(rounding))))
+
+
+def half_of_last_digit(text):
+    """0.05 of 0.6, 0.5 of 375."""
+    return 0.5 * 10.0 ** -len(text.partition('.')[2])
 
 
 TREND = re.compile(r'(?P<case>\w+)_vs_(?P<against>\w+)')
 TREND_QUANTITIES = {'chi_diff': ('chi', False), 'chi_diff_abs': ('chi', False), 'chi_diff_rel': ('chi', True),
                     'd50_rel_diff_abs': ('d50_rel', False), 'd50_rel_diff_rel': ('d50_rel', True)}
+BETWEEN_SPACINGS = {'chi_diff_abs_between_spacings': 'chi', 'd50_rel_diff_abs_between_spacings': 'd50_rel'}
 TREND_COLUMNS = ['case', 'against', 'quantity', 'section', 'difference', 'relative', 'relation', 'source']
 
 
@@ -88,6 +108,15 @@ def trends(tables):
                        '%.6g' % (float(r['value']) * UNITS[r['unit']][1]), 'yes' if relative else 'no',
                        'lt' if bound else 'eq', 'line ' + r['source_line'])
                 found[row[:4] + row[5:7]] = dict(zip(TREND_COLUMNS, row))
+    for r in rows(tables, 'segregation_profiles.csv'):
+        if r['quantity'] not in BETWEEN_SPACINGS:
+            continue
+        first, last = SECTIONS.fullmatch(r['section_or_xl']).groups()
+        for against, case in itertools.combinations(SPACINGS, 2):
+            for k in range(int(first), int(last) + 1):
+                row = (case, against, BETWEEN_SPACINGS[r['quantity']], 'S%d' % k, r['value'], 'no', 'lt',
+                       'line ' + r['source_line'])
+                found[row[:4] + row[5:7]] = dict(zip(TREND_COLUMNS, row))
     return list(found.values())
 
 
@@ -105,22 +134,34 @@ def profiles(tables, out):
     for r in lines:
         if r['case'] not in CASES or r['quantity'] not in QUANTITIES:
             continue
-        if not SECTION.fullmatch(r['section_or_xl']):
+        span = SECTIONS.fullmatch(r['section_or_xl'])
+        if not SECTION.fullmatch(r['section_or_xl']) and not (span and r['quantity'].endswith('_std')):
+            continue
+        if r['quantity'].endswith('_std') and r['kind'] != 'pfc3d':
             continue
         if r['case'] == 'cm_field_6sec' and (r['quantity'] == 'chi' or r['quantity'].endswith('_rel')):
             continue  # complete in tables C.7 to C.14, below
         if (r['source_line'], r['case'], r['quantity'], r['section_or_xl']) in CONTRADICTED:
             continue
+        across = ACROSS.get((r['source_line'], r['quantity']))
+        sections = ['S%d' % k for k in range(int(span[1]), int(span[2]) + 1)] if span else [r['section_or_xl']]
+        sections = [PLACES.get(r['case'], {}).get(section, section) for section in sections]
         for case in CASES[r['case']]:
-            for quantity in QUANTITIES[r['quantity']]:
-                out.add(case, quantity, r['section_or_xl'], r['kind'], float(r['value']), optional(r['std']), r['unit'],
-                        r['relation'], 'line ' + r['source_line'])
+            for quantity in [across] if across else QUANTITIES[r['quantity']]:
+                for section in sections:
+                    std = optional(r['std'])
+                    if quantity.endswith('_scatter'):  # a deviation of n repeats scatters by its 1 / sqrt(2 (n - 1))
+                        std = float(r['value']) / (2 * (out.repeats[case] - 1)) ** 0.5
+                    out.add(case, quantity, section, r['kind'], r['value'], std, r['unit'], r['relation'],
+                            'line ' + r['source_line'])
 
 
 def cm_field(tables, out):
     for r in rows(tables, 'cm_field_segregation_degree_summary.csv'):
         out.add('cm_field_6sec', 'chi', 'S' + r['section'], 'measured', float(r['mean_computed']),
                 float(r['std_computed']), '-', 'derived', 'C.7')
+    near = next(float(r['value']) for r in rows(tables, 'segregation_profiles.csv')
+                if (r['case'], r['quantity']) == ('C1', 'd50_rel_diff_abs'))
     grading = {(r['image'], int(r['section'])): r for r in rows(tables, 'cm_field_grading.csv')}
     images = sorted({image for image, _ in grading}, key=int)
     for percent in (10, 50, 80, 90, 95):
@@ -129,6 +170,10 @@ def cm_field(tables, out):
             ratio = [float(grading[i, k][column]) / float(grading[i, 0][column]) for i in images]
             out.add('cm_field_6sec', 'd%d_rel' % percent, 'S%d' % k, 'measured', statistics.mean(ratio),
                     statistics.stdev(ratio), '-', 'derived', 'C.8 C.%d' % (8 + k))
+            if percent == 50:  # PFC3D's is that near to the measured one
+                for bound, side in (('min', -near), ('max', near)):
+                    out.add('C1', 'd50_rel', 'S%d' % k, 'pfc3d', statistics.mean(ratio) + side, None, '-', bound,
+                            'line 1825 C.%d' % (8 + k))
 
 
 def laboratory(tables, out):
@@ -137,24 +182,27 @@ def laboratory(tables, out):
     measured = rows(tables, 'lab_segregation_measured_diameters_derived.csv')
     for section in ('top', 'middle', 'bottom'):
         for q in ('d10', 'd50', 'd80'):
-            out.add('lab_segregation', q, section, 'pfc3d', float(summary[section, 'mean'][q + '_mm']),
+            out.add('lab_segregation', q, section, 'pfc3d', summary[section, 'mean'][q + '_mm'],
                     float(summary[section, 'std'][q + '_mm']), 'mm', 'eq', 'C.4')
             values = [float(r[q + '_mm']) for r in measured if r['section'] == section]
             out.add('lab_segregation', q, section, 'measured', statistics.mean(values), statistics.stdev(values), 'mm',
                     'derived', 'C.1-C.3')
     for r in rows(tables, 'lab_segregation_slope_angle_summary.csv'):
-        out.add('lab_segregation', 'slope_angle', 'whole', r['kind'], float(r['mean_deg']), float(r['std_deg']), 'deg',
+        out.add('lab_segregation', 'slope_angle', 'whole', r['kind'], r['mean_deg'], float(r['std_deg']), 'deg',
                 'eq', 'C.15')
 
 
 def repose(tables, out):
     for r in rows(tables, 'lab_repose_pfc3d_summary.csv'):
-        out.add('lab_repose_%s_%s' % (r['mu'], r['mu_r']), 'angle', 'whole', 'pfc3d', float(r['mean_deg']),
+        out.add('lab_repose_%s_%s' % (r['mu'], r['mu_r']), 'angle', 'whole', 'pfc3d', r['mean_deg'],
                 float(r['std_deg']), 'deg', 'eq', 'B.2')
     setups = {(r['setup'], r['quantity']): r for r in rows(tables, 'setups.csv')}
 
     def setup(name, quantity):
-        return float(setups[name, quantity]['value'])
+        return setups[name, quantity]['value']
+
+    def deviation(name, quantity):
+        return float(setup(name, quantity))
 
     def line(name, quantity):
         return 'line ' + setups[name, quantity]['source_line']
@@ -162,19 +210,19 @@ def repose(tables, out):
     out.add('drop_test', 'rebound_height', 'whole', 'measured', setup('drop_test', 'rebound_height_mean'), None, 'm',
             'approx', line('drop_test', 'rebound_height_mean'))
     out.add('lab_repose_0.2_0.2', 'angle', 'whole', 'measured', setup('lab_repose_result', 'angle_measured_mean'),
-            setup('lab_repose_result', 'angle_measured_std'), 'deg', 'eq', 'B.1')
+            deviation('lab_repose_result', 'angle_measured_std'), 'deg', 'eq', 'B.1')
     for r in rows(tables, 'field_repose_pfc3d_summary.csv'):
         out.add('field_repose_%s_%s_%s' % (r['mine'], r['mu'], r['mu_r']), 'angle', 'whole', 'pfc3d',
-                float(r['mean_deg']), float(r['std_deg']), 'deg', 'eq', 'B.3' if r['mine'] == 'CM' else 'B.5')
+                r['mean_deg'], float(r['std_deg']), 'deg', 'eq', 'B.3' if r['mine'] == 'CM' else 'B.5')
     for mine, name in (('CM', 'cm'), ('QB', 'qb')):
         mu = setups['field_repose_result', name + '_mu_calibrated']['value']
         case = 'field_repose_%s_%s_%s' % (mine, mu, mu)
         out.add(case, 'angle', 'whole', 'pfc3d', setup('field_repose_result', name + '_angle_mean'),
-                setup('field_repose_result', name + '_angle_std'), 'deg', 'eq',
+                deviation('field_repose_result', name + '_angle_std'), 'deg', 'eq',
                 line('field_repose_result', name + '_angle_mean'))
         # One reference angle, 37 +- 3, serves both mines.
         out.add(case, 'angle', 'whole', 'measured', setup('cm_mine', 'repose_angle'),
-                setup('cm_mine', 'repose_angle_std'), 'deg', 'eq', line('cm_mine', 'repose_angle'))
+                deviation('cm_mine', 'repose_angle_std'), 'deg', 'eq', line('cm_mine', 'repose_angle'))
 
 
 def main():
@@ -182,7 +230,7 @@ def main():
         sys.exit(__doc__)
     tables = pathlib.Path(sys.argv[1])
     output = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else pathlib.Path(__file__).resolve().parent
-    out = Results({r['case']: r['dumps'] for r in rows(tables, 'simulation_cases.csv')})
+    out = Results(rows(tables, 'simulation_cases.csv'))
     for part in (profiles, cm_field, laboratory, repose):
         part(tables, out)
     with open(output / 'results.csv', 'w', newline='') as stream:

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "analysis/study.h"
 #include "cli/ensemble/file_reader.h"
 #include "sim/scene/scenario_read.h"

@@ -177,7 +177,11 @@ SweepResult load_cases(const std::vector<fs::path>& files, int seeds, const fs::
   for (const fs::path& file : files) {
     ScenarioResult loaded = load_scenario(file, {}, asset_dir);
     result.errors.insert(result.errors.end(), loaded.errors.begin(), loaded.errors.end());
+    result.warnings.insert(result.warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
     auto& all = loaded.scenario.seeds;
+    if (loaded.errors.empty() && seeds > 0 && static_cast<std::size_t>(seeds) > all.size())
+      result.warnings.push_back(fmt::format("{}: {} seeds are asked for, its file has {}; those are taken",
+                                            file.string(), seeds, all.size()));
     if (seeds > 0 && static_cast<std::size_t>(seeds) < all.size())
       all.resize(static_cast<std::size_t>(seeds));
     result.sweep.points.push_back({{file.stem().string()}, "", std::move(loaded.scenario)});

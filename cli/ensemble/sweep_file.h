@@ -26,6 +26,7 @@ struct Sweep {
 struct SweepResult {
   Sweep sweep;
   std::vector<ScenarioError> errors;
+  std::vector<std::string> warnings;  ///< a line each; of load_cases
 };
 
 /// Reads a sweep file:
@@ -43,7 +44,8 @@ struct SweepResult {
 SweepResult load_sweep(const std::filesystem::path& file, const std::filesystem::path& asset_dir);
 
 /// Scenario files as the points of a sweep with the one parameter `case`, the file's stem. `seeds`: how many
-/// of each, at most; 0: all that it has.
+/// of each, at most; 0: all that it has. Warns of what the scenarios are warned of, and of cases with fewer
+/// seeds than asked for.
 SweepResult load_cases(const std::vector<std::filesystem::path>& files, int seeds,
                        const std::filesystem::path& asset_dir);
 

@@ -70,7 +70,7 @@ bool is_reading_of(const std::string& output, const ReferenceValue& printed, con
   if (meaning_of(printed) != Meaning::value) return false;
   if (printed.quantity == "angle" && (output == "height_over_radius_deg" || output == "half_coverage_deg"))
     return true;
-  return output_name_for(printed, run) == output;
+  return output_name_for(pile_value(printed), run) == output;
 }
 
 }  // namespace
@@ -124,7 +124,7 @@ int PointResults::count(RunState state) const {
       std::count_if(runs.begin(), runs.end(), [&](const auto& run) { return run && run->state == state; }));
 }
 
-std::set<std::string> outputs_of(const std::vector<PointResults>& points) {
+std::set<std::string> output_names(const std::vector<PointResults>& points) {
   std::set<std::string> names;
   for (const PointResults& point : points)
     for (const auto& run : point.runs)
@@ -134,7 +134,7 @@ std::set<std::string> outputs_of(const std::vector<PointResults>& points) {
 }
 
 void write_sweep_csv(const Sweep& sweep, const std::vector<PointResults>& points, const fs::path& file) {
-  const std::set<std::string> outputs = outputs_of(points);
+  const std::set<std::string> outputs = output_names(points);
   std::string text;
   for (const std::string& name : sweep.parameters) text += csv_field(name) + ",";
   text += "seed,state,version,wall_seconds";

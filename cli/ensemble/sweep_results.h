@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/results.h"
+#include "analysis/finished_runs.h"
 #include "cli/ensemble/sweep_file.h"
 #include "sim/io/results_store.h"
 
@@ -25,13 +25,6 @@ struct PointResults {
   int count(RunState state) const;
 };
 
-/// The runs of a point that can be used, and how many cannot.
-struct FinishedRuns {
-  std::vector<Outputs> seeds;  ///< of the runs that are done and came to rest
-  int failed = 0, missing = 0;
-  int restless = 0;         ///< done, but a load still moved at its time limit
-  double wall_seconds = 0;  ///< of those that can be used
-};
 FinishedRuns finished(const PointResults& point);
 
 /// What a store has of the runs; `requests` as requests_of gives them.
@@ -39,7 +32,7 @@ std::vector<PointResults> look_up(const Sweep& sweep, const std::vector<RunReque
                                   const ResultsStore& store);
 
 /// Names of all numbers that the runs have.
-std::set<std::string> outputs_of(const std::vector<PointResults>& points);
+std::set<std::string> output_names(const std::vector<PointResults>& points);
 
 /// One row a run: the parameters, seed, state, version, wall_seconds, every output, message. Throws
 /// std::runtime_error if it cannot be written.

@@ -3,71 +3,45 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <fstream>
 #include <set>
-#include <stdexcept>
+
+#include "sim/material/csv_table.h"
 
 namespace scree {
 namespace {
 
-constexpr std::string_view kHeader =
-    "mu,mu_r,local_damping,friction,rolling,angle_rrlinear_deg,angle_impulse_deg";
 constexpr std::array<const char*, 3> kNames{"mu", "mu_r", "local_damping"};
-constexpr std::size_t kColumns = 7;
 
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> fields(1);
-  for (const char c : line)
-    if (c == ',')
-      fields.emplace_back();
-    else if (c != '\r')
-      fields.back() += c;
-  return fields;
+// Of 0 or more; none if empty.
+std::optional<double> magnitude(const CsvTable& table, const char* column) {
+  const auto value = table.optional_number(column);
+  if (value && *value < 0) table.fail(fmt::format("{} '{:g}' is no number of 0 or more", column, *value));
+  return value;
 }
 
 }  // namespace
 
 Equivalence Equivalence::read(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in) throw std::runtime_error(fmt::format("{}: cannot be opened", file.string()));
-  int number = 0;
-  const auto fail = [&](const std::string& what) {
-    throw std::runtime_error(fmt::format("{}:{}: {}", file.string(), number, what));
-  };
+  CsvTable csv(file, {"mu", "mu_r", "local_damping", "friction", "rolling", "angle_rrlinear_deg",
+                      "angle_impulse_deg"});
+  const auto fail = [&](const std::string& what) { csv.fail(what); };
   struct Row {
     std::array<double, 3> at;
     std::optional<Settings> settings;
   };
   std::vector<Row> rows;
-  bool header = false;
-  for (std::string line; std::getline(in, line);) {
-    ++number;
-    if (line.empty() || line.front() == '#' || line == "\r") continue;
-    const std::vector<std::string> fields = split(line);
-    if (!header) {
-      if (fields != split(std::string(kHeader))) fail(fmt::format("the header must be '{}'", kHeader));
-      header = true;
-      continue;
+  while (csv.next()) {
+    Row row{};
+    for (std::size_t k = 0; k < kNames.size(); ++k) {
+      csv.number(kNames[k]);
+      row.at[k] = *magnitude(csv, kNames[k]);
     }
-    if (fields.size() != kColumns) fail(fmt::format("{} columns, {} are needed", fields.size(), kColumns));
-    std::array<std::optional<double>, kColumns> values;
-    for (std::size_t k = 0; k < kColumns; ++k) {
-      if (fields[k].empty()) continue;
-      double value = 0;
-      const char* end = fields[k].data() + fields[k].size();
-      const auto [stopped, error] = std::from_chars(fields[k].data(), end, value);
-      if (error != std::errc() || stopped != end || !std::isfinite(value) || value < 0)
-        fail(fmt::format("'{}' is no number of 0 or more", fields[k]));
-      values[k] = value;
-    }
-    for (std::size_t k = 0; k < 3; ++k)
-      if (!values[k]) fail(fmt::format("{} is empty", kNames[k]));
-    Row row{{*values[0], *values[1], *values[2]}, std::nullopt};
-    if (values[3] && values[4] && values[5] && values[6])
-      row.settings = Settings{*values[3], *values[4], std::abs(*values[6] - *values[5])};
-    else if (values[3] || values[4])
+    const auto friction = magnitude(csv, "friction"), rolling = magnitude(csv, "rolling"),
+               rrlinear = magnitude(csv, "angle_rrlinear_deg"), impulse = magnitude(csv, "angle_impulse_deg");
+    if (friction && rolling && rrlinear && impulse)
+      row.settings = Settings{*friction, *rolling, std::abs(*impulse - *rrlinear)};
+    else if (friction || rolling)
       fail("a node has friction, rolling and both angles, or neither friction nor rolling");
     rows.push_back(row);
   }

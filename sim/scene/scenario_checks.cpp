@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <numbers>
 #include <stdexcept>
@@ -18,6 +20,9 @@ namespace fs = std::filesystem;
 
 /// Densest packing a container is filled to: a little below random close packing (0.64) of equal spheres.
 constexpr double kDensestFill = 0.62;
+
+/// Width and height of a blade below which it is none, m.
+constexpr double kLeastBlade = 1e-3;
 
 class Checks {
  public:
@@ -141,12 +146,45 @@ class Checks {
                fmt::format("experiment.blade.heights_m[{}]: {} m is not below the height before ({} m); the "
                            "blade cuts from the top down",
                            i, e.blade.heights[i], e.blade.heights[i - 1]));
+    blade(e.blade);
     if (notes_.good({&e.side_walls})) e.side_walls ? walled_push(e) : free_push(e);
+  }
+
+  /// A blade must have a front to push with.
+  void blade(const BladeSpec& blade) {
+    if (!notes_.good({&blade.mesh, &blade.scale}) || !fs::exists(blade.mesh)) return;
+    const LoadedMesh loaded = load_mesh(blade.mesh, blade.scale);
+    if (!loaded.report.errors.empty()) return;
+    Eigen::AlignedBox3d box;
+    for (const Vec3& vertex : loaded.mesh.vertices) box.extend(vertex);
+    const Vec3 size = box.sizes();
+    if (std::min(size.y(), size.z()) < kLeastBlade)
+      return fail(
+          &blade.mesh,
+          fmt::format("experiment.blade.mesh: {:.3g} m wide (y) and {:.3g} m high (z) has no front to "
+                      "push with; the blade faces +x, z up",
+                      size.y(), size.z()));
+    double volume = 0;
+    for (const auto& t : loaded.mesh.triangles) {
+      const auto& v = loaded.mesh.vertices;
+      const Vec3 a = v[static_cast<std::size_t>(t[0])] - box.min(),
+                 b = v[static_cast<std::size_t>(t[1])] - box.min();
+      volume += a.dot(b.cross(v[static_cast<std::size_t>(t[2])] - box.min())) / 6;
+    }
+    // A sheet that is not closed pushes with both sides; a closed mesh only with its outside.
+    if (loaded.mesh.closed && std::abs(volume) < 1e-9 * std::pow(size.norm(), 3))
+      fail(&blade.mesh,
+           "experiment.blade.mesh: closed but without volume (the same faces twice?); leave one side "
+           "out, or give it a thickness");
   }
 
   /// Between side walls the blade goes once over the ground, with the load that lies there.
   void walled_push(const PushDump& e) {
     const char* way_out = "between side walls; set side_walls: false";
+    if (notes_.good({&e.blade.left_share}) && e.blade.left_share != BladeSpec().left_share)
+      fail(&e.blade.left_share,
+           fmt::format("experiment.blade.left_share: decides on further passes, but the blade passes once {}",
+                       way_out));
     if (notes_.good({&e.blade.passes}) && e.blade.passes > 1)
       fail(&e.blade.passes,
            fmt::format("experiment.blade.passes: {}, but the blade passes once {}", e.blade.passes, way_out));
@@ -160,6 +198,11 @@ class Checks {
   }
 
   void free_push(const PushDump& e) {
+    if (notes_.good({&e.settle_s}) && e.settle_s != PushDump().settle_s)
+      fail(&e.settle_s,
+           "experiment.settle_s: the load settles before its front is opened, between side walls alone; a "
+           "heap "
+           "comes to rest by stop, set side_walls: true or leave it out");
     if (e.push_after == PushAfter::all_loads && notes_.good({&s_.output.after_dumps}) &&
         !s_.output.after_dumps.empty())
       fail(&s_.output.after_dumps,
@@ -331,43 +374,42 @@ void find_bullet_settings(Scenario& s, const fs::path& asset_dir, ReadNotes& not
     s.bullet = Equivalence::Settings{*friction, *rolling, std::nullopt};
     return;
   }
-  const char* way_out = "set numerics.impulse_friction and numerics.impulse_rolling, or take engine rrlinear";
+  const auto fail = [&](const std::string& what) {
+    report(
+        notes.errors, notes.places.at(&s.material.mu),
+        fmt::format("engine impulse: {}; set numerics.impulse_friction and numerics.impulse_rolling, or take "
+                    "engine rrlinear",
+                    what));
+  };
   const Numerics usual;
   if (s.numerics.impulse_step_ratio != usual.impulse_step_ratio ||
       s.numerics.impulse_iterations != usual.impulse_iterations) {
-    report(
-        notes.errors, notes.places.at(&s.material.mu),
-        fmt::format("engine impulse: equivalent settings of Bullet are known for impulse_step_ratio {:g} and "
-                    "impulse_iterations {} alone; {}",
-                    usual.impulse_step_ratio, usual.impulse_iterations, way_out));
+    fail(fmt::format(
+        "equivalent settings of Bullet are known for impulse_step_ratio {:g} and impulse_iterations {} alone",
+        usual.impulse_step_ratio, usual.impulse_iterations));
     return;
   }
-  const fs::path file = asset_dir / "impulse" / "equivalent.csv";
-  // The table was made with these.
-  const Material made_with;
+  const Material made_with;  // that is, the table of equivalents
   if (s.material.effective_modulus != made_with.effective_modulus ||
       s.material.stiffness_ratio != made_with.stiffness_ratio ||
       s.material.damping_reach != made_with.damping_reach || s.material.normal_damping_ratio != 0 ||
       s.material.shear_damping_ratio != 0) {
-    report(
-        notes.errors, notes.places.at(&s.material.mu),
-        fmt::format("engine impulse: equivalent settings of Bullet are known for effective_modulus_pa {:g}, "
-                    "stiffness_ratio {:g}, damping_reach always and no dashpots alone; {}",
-                    made_with.effective_modulus, made_with.stiffness_ratio, way_out));
+    fail(
+        fmt::format("equivalent settings of Bullet are known for effective_modulus_pa {:g}, stiffness_ratio "
+                    "{:g}, damping_reach always and no dashpots alone",
+                    made_with.effective_modulus, made_with.stiffness_ratio));
     return;
   }
   try {
-    const Equivalence table = Equivalence::read(file);
+    const Equivalence table = Equivalence::read(asset_dir / "impulse" / "equivalent.csv");
     s.bullet = table.at(s.material.mu, s.material.mu_r, s.material.local_damping);
     if (!s.bullet)
-      report(notes.errors, notes.places.at(&s.material.mu),
-             fmt::format(
-                 "engine impulse: no settings of Bullet are known that are equivalent to mu {:g}, mu_r {:g}, "
-                 "local_damping {:g}; known: {}; {}",
-                 s.material.mu, s.material.mu_r, s.material.local_damping, table.range(), way_out));
+      fail(
+          fmt::format("no settings of Bullet are known that are equivalent to mu {:g}, mu_r {:g}, "
+                      "local_damping {:g}; known: {}",
+                      s.material.mu, s.material.mu_r, s.material.local_damping, table.range()));
   } catch (const std::runtime_error& error) {
-    report(notes.errors, notes.places.at(&s.material.mu),
-           fmt::format("engine impulse: {}; {}", error.what(), way_out));
+    fail(error.what());
   }
   if (!s.bullet) return;
   if (friction || rolling) s.bullet->error_deg.reset();

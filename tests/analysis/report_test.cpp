@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
 
+#include "analysis/lateral_table.h"
 #include "analysis/report_text.h"
 #include "tests/analysis/fake_run.h"
 
@@ -42,6 +44,30 @@ class OnlyPath {
  private:
   std::string before_;
 };
+
+TEST(Report, StripsAcrossTheSlopeHaveATable) {
+  EXPECT_EQ(lateral_table(fake_run()), "") << "no strips";
+  RunResult run = fake_run();
+  for (SeedResult& seed : run.seeds) {
+    seed.lateral = Lateral{4, {}, 19};
+    LateralSection crest{"S1", {-4, 0}, {-0.5, -0.25}, {0.75, 0.875}, {1000, 2000}, 0.2, 0.25, 0.125};
+    LateralSection toe{"S2", {0}, {0.5}, {1.5}, {3000}, std::nan(""), std::nan(""), std::nan("")};
+    seed.lateral->sections = {crest, toe};
+  }
+  run.seeds[1].lateral->point1_toe_width = 21;
+  run.seeds[1].lateral->sections[0].chi[0] = -0.7;
+  const std::string table = lateral_table(run);
+  EXPECT_THAT(table, HasSubstr("strips 4.00 m wide"));
+  EXPECT_THAT(table, HasSubstr("width of 20.0 m ± 1.4 m"));  // of 19 and 21
+  EXPECT_THAT(table,
+              HasSubstr("<td class=\"word\">y −6.00 to −2.00 m</td><td>−0.60<small>D50 0.75</small></td>"
+                        "<td>–</td>"));
+  EXPECT_THAT(table,
+              HasSubstr("deviation of χ over strips</b></td><td>0.20<small>± 0.00</small></td><td>–</td>"));
+  const auto folder = fresh_folder("strips");
+  write_report(run, folder, {45.0});
+  EXPECT_THAT(text_of(folder / "report.html"), HasSubstr("<h2>Across the slope</h2>"));
+}
 
 TEST(Report, ShowsTheWholeRunOnOnePage) {
   const auto folder = fresh_folder("whole");

@@ -22,7 +22,7 @@ CaseResult runs(const char* name, std::initializer_list<double> chi) {
   CaseResult result;
   result.name = name;
   for (const double value : chi)
-    result.seeds.push_back({{"sections", 6}, {"dumps", 4}, {"chi_S1", value}, {"chi_S6", 0.3}});
+    result.runs.seeds.push_back({{"sections", 6}, {"dumps", 4}, {"chi_S1", value}, {"chi_S6", 0.3}});
   return result;
 }
 
@@ -82,7 +82,7 @@ TEST(Trends, FileOfTheProjectIsReadAndWrongOnesAreNamed) {
 
 TEST(Bounds, AreKeptOrPassed) {
   ReferenceValue least{"a1", "chi", "S1", "pfc3d", -1.04, std::nullopt, "-", "min", "T"};
-  const std::vector<Outputs> seeds = runs("a1", {-1.2, -1.0}).seeds;  // mean -1.1, deviation sqrt(0.02)
+  const std::vector<Outputs> seeds = runs("a1", {-1.2, -1.0}).runs.seeds;  // mean -1.1, deviation sqrt(0.02)
   const auto passed = compare_with_reference(seeds, {least}, {"a1"});
   ASSERT_EQ(passed.size(), 1u);
   EXPECT_NEAR(passed[0].z.value(), -0.06 / std::sqrt(0.02), 1e-9);
@@ -102,8 +102,8 @@ TEST(Reproduction, SaysWhatAgreesAndWhatDoesNot) {
   CaseResult a1 = runs("a1", {-1.0, -1.1});
   const ReferenceValue near{"A1", "chi", "S1", "pfc3d", -1.04, 0.33, "-", "eq", "line 1840"};
   const ReferenceValue far{"A1", "chi", "S6", "pfc3d", 0.9, 0.09, "-", "eq", "line 1855"};
-  a1.comparison = compare_with_reference(a1.seeds, {near, far}, {"A1"});
-  a1.missing = 3;
+  a1.comparison = compare_with_reference(a1.runs.seeds, {near, far}, {"A1"});
+  a1.runs.missing = 3;
   const auto lines = reproduction_in_words({a1}, {});
   EXPECT_THAT(lines,
               Contains("a1: 2 runs done, 3 not run, 0 failed, 0 left out because they did not come to rest"));
@@ -111,22 +111,69 @@ TEST(Reproduction, SaysWhatAgreesAndWhatDoesNot) {
   EXPECT_THAT(lines, Contains(HasSubstr("does not agree: A1 chi S6 (PFC3D): printed 0.9, here 0.3")));
 }
 
+TEST(Signs, OfSeedsAreTestedToOneSide) {
+  // chi(S1) -1, -2, -3: p 0.0371 by hand (ordered_trend_test.cpp); chi(S6) is 0.3 in every seed: no scatter.
+  CaseResult a1 = runs("a1", {-1, -2, -3});
+  a1.runs.seeds[0]["chi_zero_x_over_l"] = 0.6, a1.runs.seeds[1]["chi_zero_x_over_l"] = 0.8;
+  const auto signs = segregation_signs({a1, runs("b1", {-1}), runs("c1", {})});
+  ASSERT_EQ(signs.size(), 2u) << "c1 has no runs";
+  EXPECT_NEAR(signs[0].p_crest, 0.0371, 1e-4);
+  EXPECT_NEAR(signs[0].zero.mean, 0.7, 1e-12);
+  EXPECT_EQ(signs[0].zero.n, 2);
+  EXPECT_EQ(signs[0].as_expected, 6);
+  EXPECT_TRUE(std::isnan(signs[1].p_crest));
+  const auto lines = reproduction_in_words({a1, runs("b1", {-1}), runs("d1", {1, -2})}, {});
+  EXPECT_THAT(lines,
+              Contains("a1: chi(S1) -2.00 +- 1.00: below 0, p 0.037; chi(S6) 0.30 +- 0.00: no scatter; chi "
+                       "changes sign at x/L 0.70 +- 0.14"));
+  EXPECT_THAT(lines, Contains(HasSubstr("b1: chi(S1) -1.00: one seed; chi(S6) 0.30: one seed")));
+  // Mean -0.5, deviation 2.121, t = 1/3 with one degree of freedom: p = 1/2 - atan(1/3) / pi.
+  EXPECT_THAT(lines, Contains(HasSubstr("d1: chi(S1) -0.50 +- 2.12: not shown to be below 0, p 0.398")));
+}
+
+TEST(VelocityTrend, OverAllSeedsBesidePfc3ds) {
+  // Velocities 1, 2, 3 with chi 1, 3 | 2, 4 | 3, 5: slope 1, sum of squares left 6, error sqrt(6 / 4 / 4),
+  // t = 1.633 with 4 degrees of freedom (t at 0.975 is 2.776): p 0.178. Jonckheere-Terpstra, by
+  // pairs of groups 3, 3.5, 3: of (1,3)(2,4) 3 rise, of (1,3)(3,5) 3 and a tie, of (2,4)(3,5) 3; mean 6.
+  std::vector<CaseResult> cases{runs("d3", {3, 5}), runs("d1", {1, 3}), runs("d2", {2, 4})};
+  for (std::size_t k = 0; k < 3; ++k) cases[k].blade_velocity = k == 0 ? 3.0 : static_cast<double>(k);
+  for (std::size_t k = 0; k < 2; ++k)
+    cases[k].comparison = compare_with_reference(
+        cases[k].runs.seeds, {{"D", "chi", "S1", "pfc3d", k == 0 ? 0.5 : -0.5, 0.3, "-", "eq", "T"}}, {"D"});
+  const auto trends = velocity_trends(cases);
+  ASSERT_EQ(trends.size(), 1u) << "no D50 ratio in these runs";
+  EXPECT_EQ(trends[0].first, "d1");
+  EXPECT_EQ(trends[0].runs, 6u);
+  EXPECT_NEAR(trends[0].here.slope, 1, 1e-12);
+  EXPECT_NEAR(trends[0].here.high, 1 + 2.776 * std::sqrt(1.5 / 4), 1e-3);
+  EXPECT_NEAR(trends[0].here.p, 0.178, 5e-4);
+  EXPECT_DOUBLE_EQ(trends[0].order.statistic, 9.5);
+  EXPECT_DOUBLE_EQ(trends[0].order.expected, 6);
+  EXPECT_NEAR(trends[0].printed_slope, 0.5, 1e-12);
+  EXPECT_THAT(
+      reproduction_in_words(cases, {}),
+      Contains(HasSubstr("chi of S1 over the velocity of the blade, d1 to d3, 6 runs: slope +1.00 per m/s "
+                         "(95 % -0.70 to +2.70, p 0.178); Jonckheere-Terpstra p 0.")));
+  cases.pop_back();
+  EXPECT_TRUE(velocity_trends(cases).empty()) << "two velocities are no trend";
+}
+
 TEST(Reproduction, ReportHasItsTablesAndFigures) {
   const fs::path folder = fs::path(testing::TempDir()) / "scree_reproduction";
   fs::remove_all(folder);
   CaseResult a1 = runs("a1", {-1.0, -1.1}), b1 = runs("b1", {-0.5, -0.6});
   for (CaseResult* each : {&a1, &b1})
-    for (Outputs& seed : each->seeds)
+    for (Outputs& seed : each->runs.seeds)
       for (int k = 2; k < 6; ++k) seed["chi_S" + std::to_string(k)] = 0.1 * k;
   a1.comparison = compare_with_reference(
-      a1.seeds, {{"A1", "chi", "S1", "pfc3d", -1.04, 0.33, "-", "eq", "line 1840"}}, {"A1"});
+      a1.runs.seeds, {{"A1", "chi", "S1", "pfc3d", -1.04, 0.33, "-", "eq", "line 1840"}}, {"A1"});
   const auto trends = compare_trends({a1, b1}, {{"b1", "a1", "chi", "S1", 0.28, false, false, "line 1840"}});
   write_reproduction({a1, b1}, trends, folder);
   std::ifstream in(folder / "report.html");
   std::ostringstream page;
   page << in.rdbuf();
-  for (const char* text :
-       {"same direction and size", "4 of 4" /* signs of both seeds */, "figure 6.7 of the thesis"})
+  for (const char* text : {"same direction and size", "4 of 4" /* signs of both seeds */, "p of χ &lt; 0",
+                           "x/L where χ changes sign", "figure 6.7 of the thesis"})
     EXPECT_NE(page.str().find(text), std::string::npos) << text;
   EXPECT_TRUE(fs::exists(folder / "pictures" / "payload_chi.svg"));
   EXPECT_FALSE(fs::exists(folder / "pictures" / "lab_chi.svg")) << "no such runs";

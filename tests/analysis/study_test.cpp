@@ -15,7 +15,7 @@ StudyOption option(const char* name, std::initializer_list<double> crest) {
   StudyOption result;
   result.name = name;
   for (const double chi : crest)
-    result.seeds.push_back(
+    result.runs.seeds.push_back(
         {{"sections", 6}, {"chi_S1", chi}, {"chi_S6", 0.5}, {"d50_m_S1", 0.2}, {"d50_m_S6", 1.0}});
   return result;
 }

@@ -79,6 +79,34 @@ TEST(Reference, StoredFileHoldsThePrintedValues) {
       EXPECT_TRUE(find(rows, "cm_field_6sec", quantity, section, "measured")) << section << ' ' << quantity;
 }
 
+TEST(Reference, RoundingIsThatOfThePrintedDigits) {
+  const auto rows = stored();
+  EXPECT_DOUBLE_EQ(find(rows, "A1", "share_above_1m", "S6", "pfc3d")->rounding, 0.005) << "40 %";
+  EXPECT_DOUBLE_EQ(find(rows, "A1", "mass_t", "S6", "pfc3d")->rounding, 0.5) << "375 t";
+  EXPECT_DOUBLE_EQ(find(rows, "A1", "xl_chi_zero", "whole", "pfc3d")->rounding, 0.05) << "0.7";
+  EXPECT_DOUBLE_EQ(find(rows, "lab_segregation", "d50", "top", "measured")->rounding, 0.00005) << "26.3 mm";
+  EXPECT_DOUBLE_EQ(find(rows, "cm_field_6sec", "chi", "S1", "measured")->rounding, 0) << "derived";
+}
+
+TEST(Reference, HasThePrintedRangesOfSections) {
+  const auto rows = stored();
+  const auto* scatter = find(rows, "A1", "chi_scatter", "S1", "pfc3d");
+  ASSERT_TRUE(scatter);
+  EXPECT_DOUBLE_EQ(scatter->value, 0.22);  // line 1812
+  EXPECT_DOUBLE_EQ(scatter->upper.value(), 0.48);
+  for (const char* section : {"S1", "S2", "S3", "S4", "S5", "S6"}) {
+    const auto* across = find(rows, "lateral_S8", "lateral_chi_std", section, "pfc3d");
+    ASSERT_TRUE(across);
+    EXPECT_EQ(meaning_of(*across), Meaning::at_most);
+    EXPECT_DOUBLE_EQ(across->value, 0.1);  // line 1914
+    const auto *near = find(rows, "C1", "d50_rel", section, "pfc3d"),
+               *measured = find(rows, "cm_field_6sec", "d50_rel", section, "measured");
+    ASSERT_TRUE(near && measured);
+    EXPECT_NEAR(near->value, measured->value - 0.1, 1e-5);  // line 1825, six digits
+    EXPECT_NEAR(near->upper.value(), measured->value + 0.1, 1e-5);
+  }
+}
+
 TEST(Reference, EachValueStandsOnce) {
   std::map<std::string, int> seen;
   for (const auto& row : stored())
@@ -88,21 +116,22 @@ TEST(Reference, EachValueStandsOnce) {
 
 TEST(Reference, MalformedLineIsNamed) {
   const auto file = std::filesystem::path(testing::TempDir()) / "scree_bad_reference.csv";
-  const std::string header = "case,quantity,section,kind,value,std,unit,relation,source,dumps\n";
+  const std::string header = "case,quantity,section,kind,value,std,unit,relation,source,dumps,rounding\n";
   const std::map<std::string, std::string> bad{
       {"", ":1: "},
       {"a,b\n", ":1: "},
-      {header + "A1,chi,S1,pfc3d,1,,-,eq,\n", ":2: "},
-      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,,x\n", ":2: "},
-      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,\nA1,chi,S1,pfc3d,one,,-,eq,C.1,\n", ":3: "},
-      {header + "A1,chi,S1,pfc3d,,,-,eq,C.1,\n", ":2: "},
-      {header + "A1,chi,S1,pfc3d,1,-0.1,-,eq,C.1,\n", ":2: "},
-      {header + "A1,chi,S1,guess,1,,-,eq,C.1,\n", ":2: "},
-      {header + "A1,d50,S1,pfc3d,1,,mm,eq,C.1,\n", ":2: "},
-      {header + "A1,chi,S1,pfc3d,1,,-,equals,C.1,\n", ":2: "},
-      {header + ",chi,S1,pfc3d,1,,-,eq,C.1,\n", ":2: "},
-      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,2.5\n", ":2: "},
-      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,0\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,,\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,,,x\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,,\nA1,chi,S1,pfc3d,one,,-,eq,C.1,,\n", ":3: "},
+      {header + "A1,chi,S1,pfc3d,,,-,eq,C.1,,\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,-0.1,-,eq,C.1,,\n", ":2: "},
+      {header + "A1,chi,S1,guess,1,,-,eq,C.1,,\n", ":2: "},
+      {header + "A1,d50,S1,pfc3d,1,,mm,eq,C.1,,\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,equals,C.1,,\n", ":2: "},
+      {header + ",chi,S1,pfc3d,1,,-,eq,C.1,,\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,2.5,\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,0,\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,,-1\n", ":2: "},
   };
   for (const auto& [text, place] : bad) {
     std::ofstream(file) << text;
@@ -133,9 +162,40 @@ TEST(Compare, TakesTheTableWithTheCasesNumberOfDumps) {
   EXPECT_EQ(checked, 2);
 }
 
+TEST(Compare, SaysWhenTheFinishedPileStandsForAnother) {
+  std::vector<SeedResult> seeds{seed_with_sections({3})};
+  seeds[0].sections[0].dumps = 4;
+  const auto compared = compare_with_reference(outputs_of(seeds), stored(), {"cm_field_3sec"});
+  for (const auto& row : compared)
+    EXPECT_EQ(row.finished_instead, row.reference.kind == "pfc3d")
+        << "measured slopes state no number of loads";
+  EXPECT_THAT(
+      comparison_notes(compared),
+      testing::ElementsAre("cm_field_3sec: printed of the pile after load 3, which was not kept; held "
+                           "against the finished pile (output.after_dumps: [3] keeps it)"));
+  seeds[0].sections.push_back(seeds[0].sections[0]);
+  seeds[0].sections[1].dumps = 3;
+  EXPECT_TRUE(
+      comparison_notes(compare_with_reference(outputs_of(seeds), stored(), {"cm_field_3sec"})).empty());
+}
+
+TEST(Compare, ScatterOfRepeatsWithThatOfSeeds) {
+  // chi(S1) -0.4 and 0.4: deviation 0.5657, which scatters by 0.5657 / sqrt 2 = 0.4; printed 0.27 of five
+  // repeats scatters by 0.27 / sqrt 8 = 0.0955.
+  const ReferenceValue row{"case", "chi_scatter", "S1", "pfc3d", 0.27, 0.0955, "-", "eq", "T"};
+  const std::vector<Outputs> seeds =
+      outputs_of({seed_with_sections({6}, -0.4), seed_with_sections({6}, 0.4)});
+  const auto compared = compare_with_reference(seeds, {row}, {"case"});
+  ASSERT_EQ(compared.size(), 1u);
+  EXPECT_NEAR(compared[0].simulated, 0.5657, 1e-4);
+  EXPECT_NEAR(compared[0].simulated_std.value(), 0.4, 1e-12);
+  EXPECT_NEAR(compared[0].z.value(), (0.5657 - 0.27) / std::hypot(0.4, 0.0955), 1e-4);
+  EXPECT_TRUE(compare_with_reference({seeds[0]}, {row}, {"case"}).empty()) << "one seed has no scatter";
+}
+
 TEST(Compare, TakesTheTableWithTheCasesNumberOfSections) {
   const auto rows = stored();
-  const std::vector<SeedResult> seeds{seed_with_sections({6, 3, 5})};
+  const std::vector<SeedResult> seeds{seed_with_sections({6, 3, 9})};
   const auto three = compare_with_reference(outputs_of(seeds), rows, {"cm_field_3sec"});
   ASSERT_FALSE(three.empty());
   for (const auto& row : three)
@@ -149,10 +209,10 @@ TEST(Compare, TakesTheTableWithTheCasesNumberOfSections) {
   EXPECT_DOUBLE_EQ(simulated.at("mass_tS6"), 6);  // 6000 kg
   EXPECT_DOUBLE_EQ(simulated.at("share_above_1mS6"), 6. / 21);
   EXPECT_DOUBLE_EQ(simulated.at("share_above_1m_origwhole"), 0.6);
-  // qb_field_5sec reads the table of 5: D50 of S5 is 5 m in it.
-  for (const auto& row : compare_with_reference(outputs_of(seeds), rows, {"qb_field_5sec"}))
-    if (row.reference.section == "S5" && row.reference.quantity == "d50") {
-      EXPECT_DOUBLE_EQ(row.simulated, 5);
+  // qb_field_9sec reads the table of 9: D50 of S2 is 2 m in it, of S9 9 m.
+  for (const auto& row : compare_with_reference(outputs_of(seeds), rows, {"qb_field_9sec"}))
+    if (row.reference.quantity == "d50") {
+      EXPECT_DOUBLE_EQ(row.simulated, row.reference.section == "S2" ? 2 : 9);
     }
 }
 
@@ -205,12 +265,29 @@ TEST(Outputs, EveryNumberOfADumpIsOneThatIsPromised) {
   seed.sections.push_back(seed.sections[0]);
   seed.sections[0].dumps = seed.sections[1].dumps = 4, seed.sections[2].dumps = 2;
   seed.slope_angle = 37;
-  for (const auto& [name, value] : outputs_of(seed)) EXPECT_EQ(why_not_given("end_dump", name), "") << name;
+  const OutputScope dump{"end_dump", 6, {3}, {2}};
+  for (const auto& [name, value] : outputs_of(seed)) EXPECT_EQ(why_not_given(dump, name), "") << name;
   EXPECT_TRUE(outputs_of(seed).contains("chi_S4_dump2"));
-  EXPECT_NE(why_not_given("end_dump", "chi_S0"), "");
-  EXPECT_NE(why_not_given("end_dump", "chi_top"), "");
-  EXPECT_NE(why_not_given("repose_lift", "chi_S1"), "");
-  EXPECT_EQ(why_not_given("bucket_dump", "d50_m_middle"), "");
+  EXPECT_NE(why_not_given(dump, "chi_S0"), "");
+  EXPECT_NE(why_not_given(dump, "chi_top"), "");
+  EXPECT_NE(why_not_given({"repose_lift", 6, {}, {}}, "chi_S1"), "");
+  EXPECT_EQ(why_not_given({"bucket_dump", 6, {}, {}}, "d50_m_middle"), "");
+}
+
+TEST(Outputs, OfSectionsAndPilesThatTheScenarioDoesNotHaveAreRefused) {
+  const OutputScope dump{"end_dump", 6, {3}, {2}};
+  for (const char* name : {"chi_S6", "chi_S3of3", "chi_S1_dump2", "d50_m_S3of3_dump2", "lateral_chi_std_S6"})
+    EXPECT_EQ(why_not_given(dump, name), "") << name;
+  for (const char* name : {"chi_S7", "chi_S4of3", "chi_S1of5", "chi_S1of6", "chi_S1_dump3", "flow_speed_S7"})
+    EXPECT_EQ(
+        why_not_given(dump, name),
+        "this scenario cuts the slope into 6 sections (output.sections) and 3 (output.further_sections), "
+        "and keeps the pile after loads 2 (output.after_dumps) and the finished one")
+        << name;
+  EXPECT_THAT(
+      why_not_given({"push_dump", 6, {}, {}}, "chi_S1of5_dump1"),
+      testing::HasSubstr("no others (output.further_sections), and keeps no pile before the last load"));
+  EXPECT_THAT(why_not_given(dump, "chi_S1of99999999999999999999"), testing::HasSubstr("does not give it"));
 }
 
 }  // namespace

@@ -107,6 +107,14 @@ TEST_F(Cli, BadInputIsOneLineAndExitCodeTwo) {
     EXPECT_NE(result.text.find(c.message), std::string::npos) << c.arguments << ": " << result.text;
     EXPECT_EQ(std::count(result.text.begin(), result.text.end(), '\n'), 1) << result.text;
   }
+  const std::string push = "run " + std::string(SCREE_SOURCE_DIR) + "/scenarios/thesis/d2.yaml --out " +
+                           (folder / "x").string() + " --set ";
+  for (const char* key :
+       {"experiment.blade.left_share=0.2", "experiment.side_walls=false --set experiment.settle_s=3"}) {
+    const Called other = call(push + key);
+    EXPECT_EQ(other.code, 2) << key;
+    EXPECT_EQ(std::count(other.text.begin(), other.text.end(), '\n'), 1) << other.text;
+  }
   const Called set =
       call("run " + small + " --set material.mux=1 --set material.mu=-1 --out " + (folder / "x").string());
   EXPECT_EQ(set.code, 2);

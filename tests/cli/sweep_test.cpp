@@ -167,6 +167,19 @@ TEST_F(SweepCli, PredictsAndCalibratesFromTheStore) {
       << call("validate " + in_folder("mine.yaml")).text;
 }
 
+TEST_F(SweepCli, OutputsOfSectionsThatAreNotCutAreRefusedBeforeSimulations) {
+  write("dump.yaml",
+        "scenario: " + std::string(SCREE_SOURCE_DIR) +
+            "/scenarios/quick_dump.yaml\ndesign: {type: grid, parameters: {material.mu: [0.2, 0.3]}}\n");
+  const Called called =
+      call("sweep " + in_folder("dump.yaml") + " --output chi_S7 --store " + in_folder("store.sqlite"));
+  EXPECT_EQ(called.code, 2);
+  EXPECT_NE(called.text.find("--output chi_S7: this scenario cuts the slope into 6 sections"),
+            std::string::npos)
+      << called.text;
+  EXPECT_FALSE(fs::exists(in_folder("store.sqlite")));
+}
+
 TEST_F(SweepCli, WrongInputIsOneLineAndExitCodeTwo) {
   const std::string store = " --store " + in_folder("store.sqlite");
   write("bad.yaml", head + "design: {type: cube}\n");

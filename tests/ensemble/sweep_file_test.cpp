@@ -10,6 +10,7 @@
 
 #include "cli/ensemble/calibration_file.h"
 #include "cli/ensemble/equivalence_fit.h"
+#include "cli/ensemble/output_scope.h"
 #include "cli/ensemble/run_request.h"
 #include "scree_version.h"
 
@@ -135,6 +136,46 @@ TEST(EnsembleFiles, ThoseOfTheProjectLoad) {
     ++files;
   }
   EXPECT_GE(files, 4);
+}
+
+TEST_F(SweepFile, CasesWithFewerSeedsThanAskedForAreNamed) {
+  const fs::path file = folder / "case.yaml";
+  std::ofstream(file) << "extends: " << SCREE_SOURCE_DIR << "/scenarios/quick_dump.yaml\nseeds: [7, 8]\n";
+  EXPECT_TRUE(load_cases({file}, 2, kAssets).warnings.empty());
+  EXPECT_TRUE(load_cases({file}, 0, kAssets).warnings.empty());
+  const SweepResult r = load_cases({file}, 5, kAssets);
+  ASSERT_TRUE(r.errors.empty()) << r.errors.front().text();
+  EXPECT_THAT(r.sweep.points[0].scenario.seeds, ElementsAre(7u, 8u));
+  EXPECT_THAT(r.warnings, ElementsAre(HasSubstr("case.yaml: 5 seeds are asked for, its file has 2")));
+}
+
+TEST_F(SweepFile, CasesPassOnWhatTheirScenariosAreWarnedOf) {
+  // A sheet of two triangles is not closed, which is said.
+  std::ofstream(folder / "sheet.stl")
+      << "solid t\n"
+         "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 4 0\nvertex 0 0 2\n"
+         "endloop\nendfacet\n"
+         "facet normal 0 0 0\nouter loop\nvertex 0 4 0\nvertex 0 4 2\nvertex 0 0 2\n"
+         "endloop\nendfacet\nendsolid t\n";
+  const fs::path file = folder / "case.yaml";
+  std::ofstream(file)
+      << "extends: " << SCREE_SOURCE_DIR
+      << "/scenarios/quick_dump.yaml\ntools: [{name: a, mesh: sheet.stl, keyframes: [{time_s: 0}]}]\n";
+  const SweepResult r = load_cases({file}, 1, kAssets);
+  ASSERT_TRUE(r.errors.empty()) << r.errors.front().text();
+  EXPECT_THAT(r.warnings, ElementsAre(HasSubstr("case.yaml:2:")));
+}
+
+TEST_F(SweepFile, OutputsAreThoseOfAnyPoint) {
+  const fs::path file = folder / "sections.yaml";
+  std::ofstream(file)
+      << "scenario: " << SCREE_SOURCE_DIR
+      << "/scenarios/quick_dump.yaml\ndesign: {type: grid, parameters: {output.sections: [4, 5]}}\n";
+  const SweepResult r = load_sweep(file, kAssets);
+  ASSERT_TRUE(r.errors.empty()) << r.errors.front().text();
+  EXPECT_EQ(why_not_given(r.sweep, "chi_S5"), "");
+  EXPECT_THAT(why_not_given(r.sweep, "chi_S6"), HasSubstr("cuts the slope into 4 sections"));
+  EXPECT_THAT(why_not_given(r.sweep.points[0].scenario, "chi_S5"), HasSubstr("4 sections (output.sections)"));
 }
 
 TEST_F(SweepFile, PassingCurveIsATargetForItsDiameters) {

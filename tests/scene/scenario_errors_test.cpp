@@ -258,6 +258,10 @@ const BadCase kBadCases[] = {
      {"3:69: experiment.blade.heights_m: 0 entries; allowed 1 to 20"}},
     {"PushLeftShareOfAll", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: push_dump, side_walls: false, blade: {left_share: 1}}\n",
      {"3:70: experiment.blade.left_share: 1 is out of range; allowed 0 to less than 1"}},
+    {"PushLeftShareBetweenWalls", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: push_dump, blade: {left_share: 0.1}}\n",
+     {"3:51: experiment.blade.left_share: decides on further passes, but the blade passes once between side walls; set side_walls: false"}},
+    {"HeapSettles", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: push_dump, side_walls: false, settle_s: 3}\n",
+     {"3:60: experiment.settle_s: the load settles before its front is opened, between side walls alone; a heap comes to rest by stop, set side_walls: true or leave it out"}},
     {"PushAllBetweenWalls", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: push_dump, push_after: all_loads}\n",
      {"3:13: experiment.push_after: all_loads, but the blade comes after each load between side walls; set side_walls: false"}},
     {"AfterDumpsThatAreNot", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump, dumps: 4}\noutput: {after_dumps: [2, 9]}\n",
@@ -282,6 +286,32 @@ class BadScenario : public testing::TestWithParam<BadCase> {};
 TEST_P(BadScenario, IsToldWhatAndWhere) {
   const ScenarioFolder folder;
   EXPECT_EQ(folder.messages(GetParam().yaml), GetParam().messages);
+}
+
+TEST(BladeMesh, MustHaveAFrontAndAVolume) {
+  const ScenarioFolder folder;
+  const auto blade = [&](const char* name, const std::string& faces) {
+    folder.write(fmt::format("assets/meshes/{}.stl", name), fmt::format("solid t\n{}endsolid t\n", faces));
+    const auto messages = folder.messages(
+        fmt::format("grading: CM0\nmaterial: {{mu: 0.4, mu_r: 0.4}}\nexperiment: {{type: push_dump, "
+                    "blade: {{mesh: meshes/{}.stl}}}}\n",
+                    name));
+    return messages.empty() ? std::string() : messages.front();
+  };
+  const std::string sheet =
+      ScenarioFolder::facet("0 0 0", "0 4 0", "0 0 2") + ScenarioFolder::facet("0 4 0", "0 4 2", "0 0 2");
+  EXPECT_EQ(blade("sheet", sheet), "") << "both sides of a sheet push";
+  EXPECT_NE(blade("lying", ScenarioFolder::facet("0 0 0", "2 0 0", "0 4 0"))
+                .find("4 m wide (y) and 0 m high (z) has no front"),
+            std::string::npos);
+  EXPECT_NE(blade("edge_on", ScenarioFolder::facet("0 0 0", "2 0 0", "0 0 2"))
+                .find("0 m wide (y) and 2 m high (z) has no front"),
+            std::string::npos);
+  // Cut along the other diagonal, so that every edge has two faces.
+  const std::string back =
+      ScenarioFolder::facet("0 0 0", "0 4 2", "0 4 0") + ScenarioFolder::facet("0 0 0", "0 0 2", "0 4 2");
+  EXPECT_NE(blade("twice", sheet + back).find("experiment.blade.mesh: closed but without volume"),
+            std::string::npos);
 }
 
 INSTANTIATE_TEST_SUITE_P(Table, BadScenario, testing::ValuesIn(kBadCases),

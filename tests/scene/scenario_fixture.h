@@ -71,11 +71,13 @@ class ScenarioFolder {
     return out;
   }
 
- private:
+  /// A triangle of an ASCII STL, its corners as text.
   static std::string facet(const std::string& a, const std::string& b, const std::string& c) {
     return fmt::format("facet normal 0 0 0\nouter loop\nvertex {}\nvertex {}\nvertex {}\nendloop\nendfacet\n",
                        a, b, c);
   }
+
+ private:
   static void replace(std::string& text, const std::string& from, const std::string& to) {
     for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
       text.replace(at, from.size(), to);

@@ -1,4 +1,4 @@
-#include "analysis/csv_table.h"
+#include "sim/material/csv_table.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,24 @@
+#include "cli/ensemble/output_scope.h"
+
+namespace scree {
+
+OutputScope output_scope(const Scenario& scenario) {
+  return {std::string(experiment_type(scenario)), scenario.output.sections, scenario.output.further_sections,
+          scenario.output.after_dumps};
+}
+
+std::string why_not_given(const Scenario& scenario, const std::string& output) {
+  return why_not_given(output_scope(scenario), output);
+}
+
+std::string why_not_given(const Sweep& sweep, const std::string& output) {
+  std::string why;
+  for (const SweepPoint& point : sweep.points) {
+    const std::string here = why_not_given(point.scenario, output);
+    if (here.empty()) return here;
+    if (why.empty()) why = here;
+  }
+  return why;
+}
+
+}  // namespace scree
