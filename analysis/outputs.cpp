@@ -22,7 +22,10 @@ std::vector<std::string> plain_names(const std::string& experiment) {
     names.insert(names.begin(), more.begin(), more.end());
   };
   if (experiment == "repose_lift")
-    add({"angle_deg", "height_over_radius_deg", "half_coverage_deg", "height_m", "radius_m", "runaways"});
+    add({"angle_deg", "height_over_radius_deg", "half_coverage_deg", "height_m", "radius_m", "runaways",
+         "chi_ring1", "chi_ring2", "chi_ring3", "d50_rel_ring1", "d50_rel_ring2", "d50_rel_ring3",
+         "mass_share_ring1", "mass_share_ring2", "mass_share_ring3", "profile_25", "profile_50", "profile_75",
+         "spread_95"});
   else if (experiment == "drop_test")
     add({"rebound_height_m"});
   else
@@ -105,6 +108,16 @@ Outputs outputs_of(const SeedResult& seed) {
     add("height_m", seed.repose->height);
     add("radius_m", seed.repose->radius);
     add("runaways", seed.repose->runaways);
+  }
+  if (seed.heap) {
+    for (std::size_t k = 0; k < kHeapRings; ++k) {
+      const Section& ring = seed.heap->rings.sections[k];
+      add("chi_" + ring.name, ring.chi);
+      add("d50_rel_" + ring.name, ring.d50_rel);
+      add("mass_share_" + ring.name, seed.heap->mass_share[k]);
+      add(fmt::format("profile_{:.0f}", 100 * kProfilePlaces[k]), seed.heap->profile[k]);
+    }
+    add("spread_95", seed.heap->spread_95);
   }
   if (seed.slope_angle) add("slope_angle_deg", *seed.slope_angle);
   if (seed.rebound_height) add("rebound_height_m", *seed.rebound_height);
