@@ -192,7 +192,9 @@ int main(int argc, char** argv) {
                           "Scenario that simulates them: bench, sections, grading as dumped");
   analyse_app->add_option("--experiment", analyse.experiment,
                           "Instead of a scenario: repose_lift or bucket_dump");
-  analyse_app->add_option("--set", analyse.overrides, "Change a value of the scenario")->take_all();
+  analyse_app->add_option("--set", analyse.overrides, "Change a value of the scenario")
+      ->take_all()
+      ->allow_extra_args(false);
   analyse_app->add_option("--frame", analyse.frame, "Frame of the file, from 1; default: the last")
       ->check(CLI::Range(1, 1'000'000'000));
   analyse_app->add_option("--length-unit", analyse.length_unit,
@@ -205,7 +207,8 @@ int main(int argc, char** argv) {
   analyse_app
       ->add_option("--observables", analyse.observables,
                    "What goes into the dataset; default: angles, chi, masses, form of a heap")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);
   analyse_app
       ->add_option("--relative-uncertainty", analyse.relative_uncertainty,
                    "Standard uncertainty of a value with one repeat, as a share of it")

@@ -13,8 +13,9 @@ int validate_dataset(const std::filesystem::path& file) {
   for (const scree::ScenarioError& error : result.errors) fmt::print(stderr, "{}\n", error.text());
   if (!result.errors.empty()) return kBadInput;
   const scree::Dataset& dataset = result.dataset;
-  fmt::print("{}: ok: dataset '{}', {} observables of {} experiments\n", file.string(), dataset.title,
-             dataset.observables.size(), dataset.experiments.size());
+  fmt::print("{}: ok: dataset '{}', {} observable{} of {} experiment{}\n", file.string(), dataset.title,
+             dataset.observables.size(), dataset.observables.size() == 1 ? "" : "s",
+             dataset.experiments.size(), dataset.experiments.size() == 1 ? "" : "s");
   if (!dataset.source.empty()) fmt::print("source: {}\n", dataset.source);
   for (const auto& experiment : dataset.experiments)
     fmt::print("experiment {}: {} ({}){}{}\n", experiment.name, experiment.file.string(),

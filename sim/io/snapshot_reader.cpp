@@ -123,8 +123,7 @@ SnapshotRead read_snapshot(const std::filesystem::path& file, const SnapshotOpti
   // A mass in a file whose lengths are in another unit than metres is in some unit of its own.
   const bool use_mass = raw.has_mass && unit == 1;
   if (!use_mass)
-    read.notes.push_back(fmt::format("{}: masses are those of spheres of {:g} kg/m3{}",
-                                     file.filename().string(), options.density,
+    read.notes.push_back(fmt::format("masses are those of spheres of {:g} kg/m3{}", options.density,
                                      raw.has_mass ? "; the unit of the file's own is not known" : ""));
   for (std::size_t k = 0; k < raw.grains.size(); ++k) {
     Grain& grain = raw.grains[k];
