@@ -249,7 +249,8 @@ void write_report(const RunResult& result, const std::filesystem::path& folder, 
   page += figures("Charts", draw_charts(result, scene, pictures));
   page += figures("Inside the pile, and the flow", draw_inside_of(result, pictures)) + inside_table(result);
   page += section_tables(result);
-  if (std::any_of(result.seeds.begin(), result.seeds.end(), [](const SeedResult& seed) { return seed.heap.has_value(); }))
+  if (std::any_of(result.seeds.begin(), result.seeds.end(),
+                  [](const SeedResult& seed) { return seed.heap.has_value(); }))
     page += heap_table(result);
   page += facts(result) + kGlossary;
   const std::string under =
