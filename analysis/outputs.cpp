@@ -22,7 +22,10 @@ std::vector<std::string> plain_names(const std::string& experiment) {
     names.insert(names.begin(), more.begin(), more.end());
   };
   if (experiment == "repose_lift")
-    add({"angle_deg", "height_over_radius_deg", "half_coverage_deg", "height_m", "radius_m", "runaways"});
+    add({"angle_deg", "height_over_radius_deg", "half_coverage_deg", "height_m", "radius_m", "runaways",
+         "chi_ring1", "chi_ring2", "chi_ring3", "d50_rel_ring1", "d50_rel_ring2", "d50_rel_ring3",
+         "mass_share_ring1", "mass_share_ring2", "mass_share_ring3", "profile_25", "profile_50", "profile_75",
+         "spread_95"});
   else if (experiment == "drop_test")
     add({"rebound_height_m"});
   else
@@ -122,6 +125,16 @@ Outputs outputs_of(const SeedResult& seed) {
     add("radius_m", seed.repose->radius);
     add("runaways", seed.repose->runaways);
   }
+  if (seed.heap) {
+    for (std::size_t k = 0; k < kHeapRings; ++k) {
+      const Section& ring = seed.heap->rings.sections[k];
+      add("chi_" + ring.name, ring.chi);
+      add("d50_rel_" + ring.name, ring.d50_rel);
+      add("mass_share_" + ring.name, seed.heap->mass_share[k]);
+      add(fmt::format("profile_{:.0f}", 100 * kProfilePlaces[k]), seed.heap->profile[k]);
+    }
+    add("spread_95", seed.heap->spread_95);
+  }
   if (seed.slope_angle) add("slope_angle_deg", *seed.slope_angle);
   if (seed.rebound_height) add("rebound_height_m", *seed.rebound_height);
   if (seed.sections.empty()) return outputs;
@@ -219,14 +232,14 @@ std::string why_not_given(const OutputScope& scope, const std::string& output) {
   if (answer == Given::yes) return {};
   if (answer == Given::not_by_this_one)
     return fmt::format(
-        "this scenario cuts the slope into {} sections (output.sections){}{}", scope.sections,
+        "this scenario cuts the slope into {} sections, without 'of' (output.sections){}{}", scope.sections,
         scope.further_sections.empty()
             ? ", no others (output.further_sections)"
             : fmt::format(" and {} (output.further_sections)", fmt::join(scope.further_sections, ", ")),
-        scope.after_dumps.empty()
-            ? ", and keeps no pile before the last load (output.after_dumps)"
-            : fmt::format(", and keeps the pile after loads {} (output.after_dumps) and the finished one",
-                          fmt::join(scope.after_dumps, ", ")));
+        scope.after_dumps.empty() ? ", and keeps no pile before the last load (output.after_dumps)"
+                                  : fmt::format(", and keeps the pile after loads {} (output.after_dumps) "
+                                                "and the finished one, without '_dump'",
+                                                fmt::join(scope.after_dumps, ", ")));
   std::vector<std::string> names = plain_names(scope.experiment);
   if (has_sections(scope.experiment))
     for (const SectionField& field : section_fields())

@@ -11,7 +11,9 @@ namespace scree {
 
 /// The numbers of one seed: of all runs particles, simulated_seconds, largest_overlap_ratio, lost_mass_t,
 /// at_rest (0 or 1); of a repose test angle_deg, height_over_radius_deg, half_coverage_deg, height_m,
-/// radius_m, runaways; of a drop test rebound_height_m; of a dump slope_angle_deg, sections, dumps,
+/// radius_m, runaways, of its rings in plan (heap_shape.h) chi_ring1, d50_rel_ring1, mass_share_ring1 (the
+/// middle) to ring3, and profile_25, profile_50, profile_75 (height of the surface at a share of the radius),
+/// spread_95 (runout); of a drop test rebound_height_m; of a dump slope_angle_deg, sections, dumps,
 /// share_above_1m_orig, chi_zero_x_over_l (where chi changes sign along the slope) and chi_S1, mass_t_S1,
 /// d50_m_S1 ... for each section, and of a dump over a bench lateral_chi_std_S1, lateral_chi_range_S1,
 /// lateral_d50_rel_std_S1 (over strips across the slope, lateral.h), point1_toe_width_m, flow_speed_S1 and

@@ -126,6 +126,44 @@ std::string inside_table(const RunResult& result) {
          rows + "</tbody></table></div>\n";
 }
 
+/// Rings, form and runout of the heap of a repose test.
+std::string heap_table(const RunResult& result) {
+  const auto cell = [&](const char* name, auto value) {
+    std::vector<double> values;
+    for (const SeedResult& seed : result.seeds)
+      if (seed.heap) values.push_back(value(*seed.heap));
+    const MeanStd both = mean_std(values);
+    return fmt::format(
+        "<td>{}</td>",
+        both.n == 0 ? "–"
+                    : value_cell(name, both.mean, both.n > 1 ? std::optional(both.std) : std::nullopt, ""));
+  };
+  std::string rings, form;
+  for (std::size_t k = 0; k < kHeapRings; ++k) {
+    rings += fmt::format("<tr><td class=\"word\">ring {}</td>", k + 1);
+    rings += cell("mass_share", [k](const HeapShape& heap) { return heap.mass_share[k]; });
+    rings += cell("chi", [k](const HeapShape& heap) { return heap.rings.sections[k].chi; });
+    rings +=
+        cell("d50_rel", [k](const HeapShape& heap) { return heap.rings.sections[k].d50_rel; }) + "</tr>\n";
+    form += cell("profile", [k](const HeapShape& heap) { return heap.profile[k]; });
+  }
+  return "<h2>The heap</h2>\n<p>Rings in plan of equal width, the first in the middle, the last out to the "
+         "heap's radius R.</p>\n"
+         "<div class=\"wide\"><table><thead><tr><th class=\"word\">Ring</th><th>share of the "
+         "mass</th><th>χ</th>"
+         "<th>D50 ratio</th></tr></thead><tbody>\n" +
+         rings +
+         "</tbody></table></div>\n<div class=\"wide\"><table><thead><tr><th class=\"word\">Height of the "
+         "surface over the heap's</th><th>at R/4</th><th>at R/2</th><th>at 3R/4</th></tr></thead><tbody>\n"
+         "<tr><td class=\"word\">here; of a cone 0.75, 0.50, 0.25</td>" +
+         form +
+         "</tr></tbody></table></div>\n<div class=\"wide\"><table><tbody><tr><td class=\"word\">Radius that "
+         "holds "
+         "95 % of the mass over the cube root of the rock's volume</td>" +
+         cell("spread_95", [](const HeapShape& heap) { return heap.spread_95; }) +
+         "</tr></tbody></table></div>\n";
+}
+
 std::string facts(const RunResult& result) {
   double particles = 0, fixed = 0, mass = 0, simulated = 0, moved = 0, seconds = 0, overlap = 0, lost = 0,
          lost_mass = 0;
@@ -203,7 +241,11 @@ void write_report(const RunResult& result, const std::filesystem::path& folder, 
     page += "<h2>Held against printed values</h2>\n" + comparison_table(result.comparison);
   page += figures("Charts", draw_charts(result, scene, pictures));
   page += figures("Inside the pile, and the flow", draw_inside_of(result, pictures)) + inside_table(result);
-  page += section_tables(result) + lateral_table(result) + facts(result) + kGlossary;
+  page += section_tables(result) + lateral_table(result);
+  if (std::any_of(result.seeds.begin(), result.seeds.end(),
+                  [](const SeedResult& seed) { return seed.heap.has_value(); }))
+    page += heap_table(result);
+  page += facts(result) + kGlossary;
   const std::string under =
       fmt::format("Simulated with scree {}, scenario {}", result.version, result.scenario);
   write_text_file(folder / "report.html",

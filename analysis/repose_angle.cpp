@@ -188,6 +188,7 @@ ReposeAngle measure_repose(const std::vector<Grain>& heap, double floor) {
   result.height = result.radius = nan;
   if (heap.empty()) return result;
   const double x0 = weighted_median(heap, 0), y0 = weighted_median(heap, 1);
+  result.axis[0] = x0, result.axis[1] = y0;
   std::vector<Circle> circles;
   for (const Grain& grain : heap)
     circles.push_back({grain.position.x() - x0, grain.position.y() - y0, 0.5 * grain.diameter});
@@ -211,6 +212,8 @@ ReposeAngle measure_repose(const std::vector<Grain>& heap, double floor) {
   const auto [fall, at_axis] = fitted_flank(rings, height_within(rings, kAxisShare * result.radius));
   result.angle = degrees(std::atan(fall));
   result.flank_height = at_axis;
+  result.surface = rings.height;
+  result.surface_step = rings.width;
   return result;
 }
 

@@ -18,6 +18,10 @@ struct ReposeAngle {
   double radius = 0;              ///< mean R, m
   double radii[4] = {0, 0, 0, 0};  ///< +x, +y, -x, -y
   int runaways = 0;                ///< grains beyond R, left out
+  double axis[2] = {0, 0};         ///< x and y of the axis, m
+  std::vector<double> surface;  ///< mean height of what is seen from above, m over the floor, of rings about
+                                ///< the axis, `surface_step` m wide
+  double surface_step = 0;
 };
 
 /// Heap on a floor at z = `floor`; the axis is found from the heap (mass-weighted median of x and y).

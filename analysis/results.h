@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analysis/flow.h"
+#include "analysis/heap_shape.h"
 #include "analysis/inside.h"
 #include "analysis/lateral.h"
 #include "analysis/layers.h"
@@ -43,6 +44,7 @@ struct SeedResult {
   std::optional<double> largest_at_toe;  ///< share of the mass above the original D90 in the lowest sixth
   std::optional<FlowRecorder> flow;      ///< dump over a bench: speeds and depth of the flow
   std::optional<ReposeAngle> repose;     ///< repose test
+  std::optional<HeapShape> heap;         ///< repose test: rings, form, runout
   std::optional<double> rebound_height;  ///< drop test, m
   std::vector<std::array<double, 2>> profile;  ///< slope profile (x, z) m: surface along the dump axis
   std::optional<double> slope_angle;           ///< degrees, fitted to the middle of the slope

@@ -126,6 +126,27 @@ Json repose(const RunResult& result) {
           {"runaways", reading(&ReposeAngle::runaways)}};
 }
 
+Json heap(const RunResult& result) {
+  const auto reading = [&](auto value) {
+    return spread(each(result, [&](const SeedResult& seed) {
+      return seed.heap ? value(*seed.heap) : std::numeric_limits<double>::quiet_NaN();
+    }));
+  };
+  Json rings = Json::array(), profile = Json::array();
+  for (std::size_t k = 0; k < kHeapRings; ++k) {
+    Json ring = {{"name", fmt::format("ring{}", k + 1)},
+                 {"mass_share", reading([k](const HeapShape& h) { return h.mass_share[k]; })}};
+    for (const SectionField& field : section_fields())
+      ring[field.name] = reading([&](const HeapShape& h) { return field.value(h.rings.sections[k]); });
+    rings.push_back(ring);
+    profile.push_back({{"r_over_radius", kProfilePlaces[k]},
+                       {"height_share", reading([k](const HeapShape& h) { return h.profile[k]; })}});
+  }
+  return {{"rings", rings},
+          {"profile", profile},
+          {"spread_95", reading([](const HeapShape& h) { return h.spread_95; })}};
+}
+
 Json comparison(const Comparison& row) {
   const ReferenceValue& reference = row.reference;
   return {{"quantity", reference.quantity},
@@ -220,6 +241,8 @@ void write_summary(const RunResult& result, const std::filesystem::path& file) {
               {"further_sections", further}};
   if (std::any_of(seeds.begin(), seeds.end(), [](const SeedResult& seed) { return seed.repose.has_value(); }))
     out["repose"] = repose(result);
+  if (std::any_of(seeds.begin(), seeds.end(), [](const SeedResult& seed) { return seed.heap.has_value(); }))
+    out["heap"] = heap(result);
   if (std::any_of(seeds.begin(), seeds.end(),
                   [](const SeedResult& seed) { return seed.slope_angle.has_value(); }))
     out["slope_angle"] = spread(each(result, [](const SeedResult& seed) {

@@ -2,6 +2,7 @@
 // The subcommands; each returns the exit code of the program.
 #include <csignal>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -71,6 +72,22 @@ struct StudyOptions {
   bool force = false;           ///< write into a folder that is not empty
 };
 
+struct AnalyseOptions {
+  std::vector<std::filesystem::path> files;  ///< snapshots, one a repeat
+  std::filesystem::path scenario;            ///< this, or `experiment`
+  std::string experiment;                    ///< a type that needs no scenario
+  std::vector<std::string> overrides;
+  std::optional<int> frame;                    ///< from 1; none: the last
+  std::string length_unit;                     ///< of files that state none; empty: m
+  std::string up = "z";                        ///< axis that points up, z or y
+  std::string shift;                           ///< "x,y,z", m; empty: none
+  std::filesystem::path out;                   ///< folder for a dataset; empty: none
+  bool force = false;                          ///< write into a folder that is not empty
+  std::vector<std::string> observables;        ///< that go into the dataset; empty: those of the core
+  std::optional<double> relative_uncertainty;  ///< of values with one repeat
+};
+
+int run_analyse(const AnalyseOptions& options);
 int run_run(const RunOptions& options);
 int run_compare(const std::filesystem::path& dir, const std::vector<std::string>& cases);
 int run_validate(const std::filesystem::path& file, const std::vector<std::string>& overrides);

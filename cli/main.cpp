@@ -28,6 +28,7 @@ Examples:
   scree study scenarios/studies/disposal_qb.yaml         ways to dispose of a rock, ranked
   scree calibrate scenarios/calibrations/lab_angle.yaml  friction from a measured repose angle
   scree compare runs/canadian_malartic_10m               the comparison of a run, as a table
+  scree analyse heap.csv --scenario scenarios/repose_lab.yaml   what a pile of another program gives
   scree validate scenarios/a1_10m.yaml                   check a file without running it
   scree schema > scenario.schema.json                    for editors that know JSON Schema
 )";
@@ -175,9 +176,47 @@ int main(int argc, char** argv) {
   std::filesystem::path validate_file;
   std::vector<std::string> validate_overrides;
   CLI::App* validate_app =
-      app.add_subcommand("validate", "Check a scenario file and say everything that is wrong");
-  validate_app->add_option("file", validate_file, "Scenario file (YAML)")->required();
+      app.add_subcommand("validate", "Check a scenario or a dataset and say everything that is wrong");
+  validate_app->add_option("file", validate_file, "Scenario or dataset file (YAML)")->required();
   validate_app->add_option("--set", validate_overrides, "Change a value before checking")->take_all();
+
+  AnalyseOptions analyse;
+  CLI::App* analyse_app =
+      app.add_subcommand("analyse", "Read piles of any program: observables, and a dataset of them");
+  analyse_app
+      ->add_option(
+          "files", analyse.files,
+          "Snapshots, one a repeat: CSV (x, y, z, diameter or radius), LAMMPS dump, legacy VTK, particles.h5")
+      ->required();
+  analyse_app->add_option("--scenario", analyse.scenario,
+                          "Scenario that simulates them: bench, sections, grading as dumped");
+  analyse_app->add_option("--experiment", analyse.experiment,
+                          "Instead of a scenario: repose_lift or bucket_dump");
+  analyse_app->add_option("--set", analyse.overrides, "Change a value of the scenario")
+      ->take_all()
+      ->allow_extra_args(false);
+  analyse_app->add_option("--frame", analyse.frame, "Frame of the file, from 1; default: the last")
+      ->check(CLI::Range(1, 1'000'000'000));
+  analyse_app->add_option("--length-unit", analyse.length_unit,
+                          "Unit of files that state none: m, cm, mm; default: m");
+  analyse_app->add_option("--up", analyse.up, "Axis that points up, z or y; default: z")
+      ->check(CLI::IsMember({"z", "y"}));
+  analyse_app->add_option("--shift", analyse.shift, "Added to all places, after turning: x,y,z in metres");
+  analyse_app->add_option("--out", analyse.out, "Folder for dataset.yaml and observables.csv");
+  analyse_app->add_flag("--force", analyse.force, "Write into --out even if it holds something");
+  analyse_app
+      ->add_option("--observables", analyse.observables,
+                   "What goes into the dataset; default: angles, chi, masses, form of a heap")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  analyse_app
+      ->add_option("--relative-uncertainty", analyse.relative_uncertainty,
+                   "Standard uncertainty of a value with one repeat, as a share of it")
+      ->check(CLI::PositiveNumber);
+  analyse_app->footer(
+      "\nExamples:\n  scree analyse heap1.csv heap2.csv heap3.csv --scenario scenarios/repose_lab.yaml --out "
+      "measured\n"
+      "  scree analyse dump.lammpstrj --experiment repose_lift --length-unit mm --up y\n");
 
   CLI::App* schema_app = app.add_subcommand("schema", "Print the JSON Schema of scenario files");
 
@@ -189,7 +228,7 @@ int main(int argc, char** argv) {
     if (names_one && app.get_subcommands().empty()) {
       fmt::print(stderr,
                  "scree: {}: no such subcommand; there are run, sweep, reproduce, study, calibrate, predict, "
-                 "compare, validate and schema\n",
+                 "compare, analyse, validate and schema\n",
                  argv[1]);
       return kBadInput;
     }
@@ -210,6 +249,7 @@ int main(int argc, char** argv) {
     if (*predict_app) return run_predict(predict);
     if (*compare_app) return run_compare(compare_dir, compare_cases);
     if (*validate_app) return run_validate(validate_file, validate_overrides);
+    if (*analyse_app) return run_analyse(analyse);
     if (*schema_app) return run_schema();
   } catch (const std::exception& error) {
     fmt::print(stderr, "scree: {}\n", error.what());

@@ -124,6 +124,7 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
     r.rebound_height = outcome.rebound_height;
   } else if (!r.final_state.grains.empty()) {
     r.repose = measure_repose(r.final_state.grains);
+    r.heap = measure_heap_shape(r.final_state.grains, r.original, *r.repose);
   }
   return r;
 }

@@ -121,8 +121,8 @@ void put_in_order(std::vector<ScenarioError>& errors, const std::vector<std::str
 }  // namespace
 
 std::string ScenarioError::text() const {
-  return line > 0 ? fmt::format("{}:{}:{}: {}", file, line, column, message)
-                  : fmt::format("{}: {}", file, message);
+  if (column > 0) return fmt::format("{}:{}:{}: {}", file, line, column, message);
+  return line > 0 ? fmt::format("{}:{}: {}", file, line, message) : fmt::format("{}: {}", file, message);
 }
 
 ScenarioResult load_scenario(const fs::path& file, const std::vector<std::string>& overrides,

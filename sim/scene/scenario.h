@@ -209,7 +209,7 @@ const BenchSpec* bench_of(const Scenario& scenario);
 /// One thing wrong in a scenario file.
 struct ScenarioError {
   std::string file;
-  int line = 0, column = 0;  ///< from 1; 0 for `--set`
+  int line = 0, column = 0;  ///< from 1; 0 for `--set`, and column for a row of a table
   std::string message;       ///< what is wrong, what is allowed
   std::string text() const;  ///< file:line:column: message
 };

@@ -116,6 +116,7 @@ TEST(Report, ShowsAReposeTest) {
   seed.repose->flank_height = 0.54;
   seed.repose->height = 0.54;
   seed.repose->radius = 0.72;
+  seed.heap = measure_heap_shape(heap, heap, measure_repose(heap));
   Comparison row = fake_comparison("angle", "whole", "pfc3d", 34.9, 3.1, 36.9, 0.65);
   row.reference.unit = "deg";
   row.reference.case_name = "lab_repose";
@@ -124,6 +125,7 @@ TEST(Report, ShowsAReposeTest) {
   const std::string page = text_of(folder / "report.html");
   EXPECT_THAT(page, HasSubstr("The heap stands at a repose angle of 36.9°"));
   EXPECT_THAT(page, HasSubstr("34.9°"));
+  EXPECT_THAT(page, HasSubstr("ring 3"));
   EXPECT_GT(std::filesystem::file_size(folder / "pictures" / "heap_cut.png"), 4000U);
   EXPECT_GT(std::filesystem::file_size(folder / "pictures" / "repose.svg"), 4000U);
 }

@@ -87,12 +87,17 @@ TEST(Summary, HasTheReposeAngleOfEachSeed) {
     SeedResult seed;
     seed.repose = ReposeAngle{};
     seed.repose->angle = angle;
+    seed.heap = HeapShape{};
+    seed.heap->rings.sections.resize(kHeapRings);
+    seed.heap->profile[1] = angle / 100;
     run.seeds.push_back(seed);
   }
   write_summary(run, file);
   const json summary = read(file);
   EXPECT_EQ(summary["repose"]["angle_deg"]["mean"], 37.0);
   EXPECT_EQ(summary["repose"]["angle_deg"]["per_seed"], json({36.0, 38.0}));
+  EXPECT_EQ(summary["heap"]["profile"][1]["height_share"]["mean"], 0.37);
+  EXPECT_EQ(summary["heap"]["rings"].size(), 3U);
   EXPECT_TRUE(summary["sections"].empty());
 }
 

@@ -279,10 +279,10 @@ TEST(Outputs, OfSectionsAndPilesThatTheScenarioDoesNotHaveAreRefused) {
   for (const char* name : {"chi_S6", "chi_S3of3", "chi_S1_dump2", "d50_m_S3of3_dump2", "lateral_chi_std_S6"})
     EXPECT_EQ(why_not_given(dump, name), "") << name;
   for (const char* name : {"chi_S7", "chi_S4of3", "chi_S1of5", "chi_S1of6", "chi_S1_dump3", "flow_speed_S7"})
-    EXPECT_EQ(
-        why_not_given(dump, name),
-        "this scenario cuts the slope into 6 sections (output.sections) and 3 (output.further_sections), "
-        "and keeps the pile after loads 2 (output.after_dumps) and the finished one")
+    EXPECT_EQ(why_not_given(dump, name),
+              "this scenario cuts the slope into 6 sections, without 'of' (output.sections) and 3 "
+              "(output.further_sections), "
+              "and keeps the pile after loads 2 (output.after_dumps) and the finished one, without '_dump'")
         << name;
   EXPECT_THAT(
       why_not_given({"push_dump", 6, {}, {}}, "chi_S1of5_dump1"),

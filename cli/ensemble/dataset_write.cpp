@@ -1,0 +1,64 @@
+#include "cli/ensemble/dataset_write.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "analysis/output_units.h"
+#include "sim/io/text_file.h"
+
+namespace scree {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A YAML scalar in double quotes.
+std::string in_quotes(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return out + "\"";
+}
+
+}  // namespace
+
+std::vector<std::string> write_dataset(const DatasetDraft& draft, const fs::path& folder) {
+  std::string table = "experiment,observable,value,unit,std,repeats\n";
+  std::vector<std::string> left_out;
+  int rows = 0;
+  for (const auto& [name, measured] : draft.observables) {
+    const bool scatters = measured.n > 1 && measured.std > 0;
+    if (!scatters && !(draft.relative_uncertainty && measured.n == 1 && measured.mean != 0)) {
+      left_out.push_back(name);
+      continue;
+    }
+    const std::string unit = unit_of_output(name);
+    table += fmt::format("{},{},{:.9g},{},{},{}\n", draft.experiment, name, measured.mean,
+                         unit.empty() ? "-" : unit, scatters ? fmt::format("{:.6g}", measured.std) : "",
+                         measured.n);
+    ++rows;
+  }
+  if (rows == 0)
+    throw std::runtime_error(
+        "no observable scatters between the repeats: there is nothing to write a dataset of");
+  const fs::path scenario = fs::absolute(draft.scenario).lexically_normal();
+  const fs::path from = fs::absolute(folder).lexically_normal();
+  std::string yaml = fmt::format("title: {}\nsource: {}\nexperiments:\n  {}:\n    scenario: {}\n",
+                                 in_quotes(draft.title), in_quotes(draft.source), in_quotes(draft.experiment),
+                                 in_quotes(scenario.lexically_relative(from).generic_string()));
+  if (!draft.overrides.empty()) yaml += "    set:\n";
+  for (const std::string& text : draft.overrides) {
+    const auto at = text.find('=');
+    yaml += fmt::format("      {}: {}\n", text.substr(0, at), text.substr(at + 1));
+  }
+  yaml += "observables: observables.csv\n";
+  if (draft.relative_uncertainty)
+    yaml += fmt::format("default_relative_uncertainty: {:g}\n", *draft.relative_uncertainty);
+  write_text_file(folder / "observables.csv", table);
+  write_text_file(folder / "dataset.yaml", yaml);
+  return left_out;
+}
+
+}  // namespace scree

@@ -1,0 +1,27 @@
+#pragma once
+// Writing a dataset of what was measured in repeats.
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/results.h"
+
+namespace scree {
+
+/// What a dataset is made of.
+struct DatasetDraft {
+  std::string title, source, experiment;
+  std::filesystem::path scenario;
+  std::vector<std::string> overrides;  ///< "key=value"
+  std::map<std::string, MeanStd> observables;
+  std::optional<double> relative_uncertainty;  ///< of those with one repeat
+};
+
+/// Writes dataset.yaml and observables.csv into a folder that is there. Observables without a scatter between
+/// repeats have no uncertainty: they are left out unless `relative_uncertainty` is given, and returned.
+/// Throws std::runtime_error if nothing is left or a file cannot be written.
+std::vector<std::string> write_dataset(const DatasetDraft& draft, const std::filesystem::path& folder);
+
+}  // namespace scree

@@ -1,0 +1,205 @@
+#include "sim/io/input_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+namespace scree {
+namespace {
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+bool is_blank(char c) {
+  return c == ' ' || c == '\t';
+}
+
+// What a file is by its first bytes, where that is no text.
+const char* kind_of_binary(std::string_view bytes) {
+  const auto begins = [&](std::string_view mark) { return bytes.substr(0, mark.size()) == mark; };
+  if (begins("\x89PNG") || begins("\xFF\xD8\xFF") || begins("GIF8") || begins("BM") || begins("II*") ||
+      begins("MM"))
+    if (bytes.substr(0, 4096).find('\0') != std::string_view::npos || begins("\xFF\xD8\xFF"))
+      return "a picture, no text";
+  if (begins("PK\x03\x04")) return "a spreadsheet or an archive, no text; save it as CSV";
+  if (begins("\x1F\x8B")) return "compressed; unpack it first";
+  if (begins("%PDF")) return "a PDF, no table";
+  if (begins("\x89HDF")) return "HDF5, no text";
+  if (begins("\xFF\xFE") || begins("\xFE\xFF")) return "UTF-16; save it as UTF-8";
+  if (bytes.substr(0, 4096).find('\0') != std::string_view::npos) return "binary, no text";
+  return nullptr;
+}
+
+std::string in_quotes(std::string_view text) {
+  return fmt::format("'{}{}'", text.substr(0, 40), text.size() > 40 ? "..." : "");
+}
+
+}  // namespace
+
+FileError::FileError(const std::filesystem::path& file_, int line_, const std::string& message_)
+    : std::runtime_error(line_ > 0 ? fmt::format("{}:{}: {}", file_.string(), line_, message_)
+                                   : fmt::format("{}: {}", file_.string(), message_)),
+      file(file_.string()),
+      line(line_),
+      message(message_) {}
+
+std::string read_input_bytes(const std::filesystem::path& file) {
+  std::error_code none;
+  if (!std::filesystem::exists(file, none)) throw FileError(file, 0, "there is no such file");
+  if (!std::filesystem::is_regular_file(file, none)) throw FileError(file, 0, "is no file");
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  if (!in) throw FileError(file, 0, "cannot be read (no permission?)");
+  if (bytes.empty()) throw FileError(file, 0, "the file is empty");
+  return bytes;
+}
+
+void require_text(const std::filesystem::path& file, std::string_view bytes) {
+  if (const char* kind = kind_of_binary(bytes)) throw FileError(file, 0, fmt::format("is {}", kind));
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::string in_small_letters(std::string_view text) {
+  std::string out(text);
+  for (char& c : out)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return out;
+}
+
+std::optional<double> number_in(std::string_view text, bool comma) {
+  text = trimmed(text);
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  std::string with_point;
+  if (comma && text.find(',') != std::string_view::npos) {
+    if (text.find('.') != std::string_view::npos) return std::nullopt;  // 1.234,5: either may be meant
+    with_point = text;
+    std::replace(with_point.begin(), with_point.end(), ',', '.');
+    text = with_point;
+  }
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+DelimitedTable::DelimitedTable(const std::filesystem::path& file)
+    : file_(file), text_(read_input_bytes(file)) {
+  require_text(file, text_);
+  if (text_.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0) at_ = kByteOrderMark.size();
+  // The separator is the header's; read it once to see which.
+  const std::size_t start = at_;
+  separator_ = '\n';
+  if (!read_row()) throw FileError(file, 0, "the file has no header");
+  const std::string head = fields_.front();
+  for (const char candidate : {';', '\t', ',', ' '}) {
+    separator_ = candidate;
+    if (candidate == ' ' || head.find(candidate) != std::string::npos) break;
+  }
+  if (separator_ == ' ' && trimmed(head).find(' ') == std::string_view::npos) separator_ = ',';  // one column
+  at_ = start, line_ = 1;
+  read_row();
+  header_line_ = row_line_;
+  header_.assign(fields_.begin(), fields_.begin() + static_cast<std::ptrdiff_t>(used_));
+  for (std::size_t k = 0; k < header_.size(); ++k)
+    if (!header_[k].empty() && column(header_[k]) != k)
+      fail(fmt::format("the column {} stands twice in the header", in_quotes(header_[k])));
+}
+
+std::optional<std::size_t> DelimitedTable::column(std::string_view name) const {
+  const std::string wanted = in_small_letters(name);
+  for (std::size_t k = 0; k < header_.size(); ++k)
+    if (in_small_letters(header_[k]) == wanted) return k;
+  return std::nullopt;
+}
+
+bool DelimitedTable::next() {
+  if (!read_row()) return false;
+  // Blanks after a last separator, as spreadsheets leave them.
+  while (used_ > header_.size() && fields_[used_ - 1].empty()) --used_;
+  if (used_ != header_.size())
+    fail(fmt::format("{} fields, but the header has {}{}", used_, header_.size(),
+                     separator_ == ',' && used_ > header_.size()
+                         ? "; where commas are decimal, separate fields by semicolons"
+                         : ""));
+  return true;
+}
+
+std::optional<double> DelimitedTable::number(std::size_t column) const {
+  const std::string& text = fields_[column];
+  if (text.empty()) return std::nullopt;
+  if (const auto value = number_in(text, separator_ == ';' || separator_ == '\t')) return value;
+  const std::string word = in_small_letters(text);
+  if (word == "nan" || word == "inf" || word == "-inf" || word == "infinity" || word == "-nan")
+    fail(fmt::format("{}: {} is not finite", header_[column], text));
+  fail(fmt::format("{}: {} is no number", header_[column], in_quotes(text)));
+}
+
+bool DelimitedTable::at_line_end() const {
+  return at_ >= text_.size() || text_[at_] == '\n' || text_[at_] == '\r';
+}
+
+void DelimitedTable::read_field(std::string& field) {
+  const auto ends = [&] {
+    return at_line_end() || text_[at_] == separator_ || (separator_ == ' ' && is_blank(text_[at_]));
+  };
+  field.clear();
+  while (!at_line_end() && is_blank(text_[at_]) && text_[at_] != separator_) ++at_;
+  if (separator_ != '\n' && at_ < text_.size() && text_[at_] == '"') {
+    for (++at_;; ++at_) {
+      if (at_ >= text_.size()) fail("a field in quotes does not end");
+      if (text_[at_] == '\n') ++line_;
+      if (text_[at_] == '"') {
+        if (at_ + 1 >= text_.size() || text_[at_ + 1] != '"') break;
+        ++at_;
+      }
+      field += text_[at_];
+    }
+    ++at_;
+    while (!ends() && is_blank(text_[at_])) ++at_;
+    if (!ends()) fail("text after a field in quotes");
+  } else {
+    const std::size_t from = at_;
+    while (!ends()) ++at_;
+    field.assign(text_, from, at_ - from);
+  }
+  field = std::string(trimmed(field));
+}
+
+bool DelimitedTable::read_row() {
+  // To the next line that says something.
+  for (;; ++line_) {
+    if (at_ >= text_.size()) return false;
+    std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    std::string_view whole = std::string_view(text_).substr(at_, end - at_);
+    if (!whole.empty() && whole.back() == '\r') whole.remove_suffix(1);
+    whole = trimmed(whole);
+    if (!whole.empty() && whole.front() != '#') break;
+    at_ = end + 1;
+  }
+  row_line_ = line_;
+  used_ = 0;
+  while (true) {
+    if (separator_ == ' ') {
+      while (!at_line_end() && is_blank(text_[at_])) ++at_;
+      if (at_line_end() && used_ > 0) break;
+    }
+    if (used_ == fields_.size()) fields_.emplace_back();
+    read_field(fields_[used_++]);
+    if (at_line_end()) break;
+    ++at_;
+  }
+  if (at_ < text_.size() && text_[at_] == '\r') ++at_;
+  if (at_ < text_.size() && text_[at_] == '\n') ++at_;
+  ++line_;
+  return true;
+}
+
+}  // namespace scree

@@ -1,0 +1,66 @@
+#pragma once
+// Reading files that others made: text that is checked to be text, and tables.
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace scree {
+
+/// Something wrong in a file that was read; what() is `file:line: message`, or `file: message` with line 0.
+struct FileError : std::runtime_error {
+  FileError(const std::filesystem::path& file, int line, const std::string& message);
+  std::string file;
+  int line;  ///< from 1
+  std::string message;
+};
+
+/// The bytes of a file. Throws FileError if there is none, or nothing in it.
+std::string read_input_bytes(const std::filesystem::path& file);
+
+/// Throws FileError for what is no text: a picture, an archive, another encoding than UTF-8.
+void require_text(const std::filesystem::path& file, std::string_view bytes);
+
+/// A decimal number and nothing else, not infinite; with `comma`, a decimal comma is one too.
+std::optional<double> number_in(std::string_view text, bool comma = false);
+
+/// Without blanks at either end; in small letters.
+std::string_view trimmed(std::string_view text);
+std::string in_small_letters(std::string_view text);
+
+/// A table with a header, row by row. Fields are separated by commas, semicolons, tabulators or, where the
+/// header has none of these, blanks; semicolons or tabulators allow decimal commas. A field may stand in
+/// double quotes (RFC 4180: "" is one of them, line ends are allowed within). Lines that are empty or begin
+/// with # are passed over; line ends of Windows and a byte order mark are taken. All errors are FileError.
+class DelimitedTable {
+ public:
+  /// Throws when the file is empty, no text, or has no header, or a column stands twice in it.
+  explicit DelimitedTable(const std::filesystem::path& file);
+
+  const std::vector<std::string>& header() const { return header_; }  ///< as written, without blanks around
+  /// Number of the column of this name, whatever its case; none if there is none.
+  std::optional<std::size_t> column(std::string_view name) const;
+  bool next();  ///< goes to the next row; false after the last. Throws unless it has a field a column
+  const std::string& field(std::size_t column) const { return fields_[column]; }  ///< without blanks around
+  /// The number in a field; none if it is empty. Throws if it is no number.
+  std::optional<double> number(std::size_t column) const;
+  int line() const { return row_line_; }  ///< where this row begins
+  int header_line() const { return header_line_; }
+  [[noreturn]] void fail(const std::string& message) const { throw FileError(file_, row_line_, message); }
+
+ private:
+  bool read_row();
+  void read_field(std::string& field);
+  bool at_line_end() const;
+  std::filesystem::path file_;
+  std::string text_;
+  std::size_t at_ = 0;
+  int line_ = 1, row_line_ = 1, header_line_ = 1;
+  char separator_ = ',';  // ' ': blanks
+  std::vector<std::string> header_, fields_;
+  std::size_t used_ = 0;  // of fields_, in this row
+};
+
+}  // namespace scree

@@ -1,0 +1,141 @@
+// Grains from a table, and words and numbers from a text.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <regex>
+
+#include "sim/io/snapshot_formats.h"
+
+namespace scree {
+namespace {
+
+constexpr double kLargestInteger = 9007199254740992.0;  // 2^53: exact as a double
+
+struct Unit {
+  std::string_view name;
+  double factor;
+};
+constexpr std::array<Unit, 4> kLengths{{{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}}};
+constexpr std::array<Unit, 3> kMasses{{{"kg", 1}, {"g", 1e-3}, {"t", 1e3}}};
+
+// Where a quantity stands, and its factor to SI.
+struct Column {
+  std::size_t at;
+  double factor;
+};
+
+std::map<std::string, Column, std::less<>> columns_of(const std::filesystem::path& file,
+                                                      const DelimitedTable& table, double length_unit) {
+  static const std::regex bracket(R"((.*?)\s*[\[(]\s*(.*?)\s*[\])]\s*)"), suffix(R"((.*)_([a-z]{1,2}))");
+  std::map<std::string, Column, std::less<>> columns;
+  for (std::size_t k = 0; k < table.header().size(); ++k) {
+    const std::string name = in_small_letters(table.header()[k]);
+    std::string quantity(meaning_of_column(name)), unit;
+    std::smatch parts;
+    if (quantity.empty() &&
+        (std::regex_match(name, parts, bracket) || std::regex_match(name, parts, suffix))) {
+      quantity = meaning_of_column(parts[1].str());
+      unit = parts[2];
+    }
+    if (quantity.empty()) continue;
+    double factor = 1;
+    const bool mass = quantity == "mass",
+               length = quantity.size() == 1 || quantity == "diameter" || quantity == "radius";
+    if (length) factor = length_unit;
+    if (!unit.empty() && (mass || length)) {
+      const Unit* found = nullptr;
+      if (mass)
+        for (const Unit& each : kMasses) found = each.name == unit ? &each : found;
+      else
+        for (const Unit& each : kLengths) found = each.name == unit ? &each : found;
+      if (found == nullptr)
+        throw FileError(file, table.header_line(),
+                        fmt::format("the unit of column '{}' is none of {}", table.header()[k],
+                                    mass ? "kg, g, t" : "m, cm, mm, um"));
+      factor = found->factor;
+    }
+    if (!columns.emplace(quantity, Column{k, factor}).second)
+      throw FileError(file, table.header_line(), fmt::format("two columns are '{}'", quantity));
+  }
+  return columns;
+}
+
+}  // namespace
+
+RawSnapshot read_csv_snapshot(const std::filesystem::path& file, double length_unit) {
+  DelimitedTable table(file);
+  const auto columns = columns_of(file, table, length_unit);
+  const auto has = [&](std::string_view name) { return columns.find(name) != columns.end(); };
+  for (const char* name : {"x", "y", "z"})
+    if (!has(name))
+      throw FileError(file, table.header_line(),
+                      fmt::format("no column {}; x, y, z and diameter or radius are needed, found: {:.200}",
+                                  name, fmt::format("{}", fmt::join(table.header(), ", "))));
+  if (!has("diameter") && !has("radius"))
+    throw FileError(file, table.header_line(), "no radius: a column diameter or radius is needed");
+  RawSnapshot raw;
+  raw.in_metres = true;
+  raw.has_mass = has("mass"), raw.has_id = has("id"), raw.has_dump = has("dump");
+  while (table.next()) {
+    const auto value = [&](std::string_view name) {
+      const Column& column = columns.find(name)->second;
+      const auto number = table.number(column.at);
+      if (!number) table.fail(fmt::format("{} is empty", table.header()[column.at]));
+      return *number * column.factor;
+    };
+    const auto whole = [&](std::string_view name) {
+      const double number = value(name);
+      if (number != std::floor(number) || std::abs(number) > kLargestInteger)
+        table.fail(fmt::format("{} must be an integer", name));
+      return number;
+    };
+    Grain grain;
+    grain.position = {value("x"), value("y"), value("z")};
+    grain.diameter = has("diameter") ? value("diameter") : 2 * value("radius");
+    if (raw.has_mass) grain.mass = value("mass");
+    if (raw.has_id) grain.id = static_cast<std::int64_t>(whole("id"));
+    if (raw.has_dump) {
+      const double dump = whole("dump");
+      if (!(dump >= 1 && dump <= 1e6)) table.fail("dump must be an integer from 1 on");
+      grain.dump = static_cast<int>(dump);
+    }
+    raw.grains.push_back(grain);
+    raw.lines.push_back(table.line());
+  }
+  return raw;
+}
+
+std::string_view TextCursor::next_line() {
+  const std::size_t from = at_, end = std::min(text_.find('\n', at_), text_.size());
+  if (done()) return {};
+  at_ = end + 1;
+  ++line_;
+  std::string_view line = text_.substr(from, end - from);
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  return line;
+}
+
+std::string_view TextCursor::word() {
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
+  for (; !done() && blank(text_[at_]); ++at_) line_ += text_[at_] == '\n';
+  const std::size_t from = at_;
+  while (!done() && !blank(text_[at_])) ++at_;
+  return text_.substr(std::min(from, text_.size()), at_ - from);
+}
+
+std::string_view TextCursor::bytes(std::size_t count) {
+  if (at_ > text_.size() || count > text_.size() - at_) fail("the file ends before its data do");
+  at_ += count;
+  return text_.substr(at_ - count, count);
+}
+
+double TextCursor::number() {
+  const std::string_view text = word();
+  if (text.empty()) fail("the file ends before its data do");
+  const auto value = number_in(text);
+  if (!value) fail(fmt::format("'{:.40}' is no finite number", text));
+  return *value;
+}
+
+}  // namespace scree

@@ -1,0 +1,56 @@
+#pragma once
+// The formats that read_snapshot knows, each as it stands in the file.
+#include <array>
+#include <filesystem>
+#include <string_view>
+
+#include "sim/io/input_text.h"
+#include "sim/io/snapshot_reader.h"
+
+namespace scree {
+
+/// A file before units, axes and checks.
+struct RawSnapshot {
+  double time = 0;
+  std::vector<Grain> grains;
+  std::vector<int> lines;  ///< of each grain; empty where the file has no lines
+  bool has_mass = false, has_id = false, has_dump = false;
+  bool in_metres = false;  ///< lengths are metres, masses kilograms
+  std::vector<Grain> original, fixed;
+};
+
+/// What a column or an array holds, by the names that programs give it: x, y, z, diameter, radius, mass, id,
+/// dump, vx, vy, vz; empty for anything else. Case does not count.
+std::string_view meaning_of_column(std::string_view name);
+
+/// `length_unit`: of columns that name none.
+RawSnapshot read_csv_snapshot(const std::filesystem::path& file, double length_unit);
+RawSnapshot read_lammps_dump(const std::filesystem::path& file, std::string_view text,
+                             std::optional<int> frame);
+RawSnapshot read_vtk(const std::filesystem::path& file, std::string_view bytes);
+RawSnapshot read_trajectory_frame(const std::filesystem::path& file, std::optional<int> frame);
+
+/// Index of a frame from 0 among `count`; throws FileError.
+std::size_t frame_index(const std::filesystem::path& file, std::optional<int> frame, std::size_t count);
+
+/// Numbers of a text one after another, lines counted: what dumps and VTK files are made of.
+class TextCursor {
+ public:
+  TextCursor(const std::filesystem::path& file, std::string_view text, std::size_t at = 0, int line = 1)
+      : file_(file), text_(text), at_(at), line_(line) {}
+  bool done() const { return at_ >= text_.size(); }
+  std::string_view next_line();               ///< without its end; empty at the end of the text
+  std::string_view word();                    ///< the next one, line ends passed over; empty at the end
+  std::string_view bytes(std::size_t count);  ///< throws where there are fewer
+  double number();                            ///< the next word; throws unless a finite number
+  int line() const { return line_; }
+  [[noreturn]] void fail(const std::string& message) const { throw FileError(file_, line_, message); }
+
+ private:
+  const std::filesystem::path& file_;
+  std::string_view text_;
+  std::size_t at_;
+  int line_;
+};
+
+}  // namespace scree
