@@ -110,15 +110,17 @@ int write_and_check(const AnalyseOptions& options, const scree::Scenario& scenar
   std::vector<std::string> names;
   for (const fs::path& file : options.files) names.push_back(file.filename().string());
   draft.source = fmt::format("scree analyse {}", fmt::join(names, " "));
-  draft.experiment = std::regex_replace(scenario.name, std::regex("[/,;\"]"), "_");
-  draft.scenario = options.scenario;
-  draft.overrides = options.overrides;
+  scree::DatasetDraft::Experiment experiment;
+  experiment.name = std::regex_replace(scenario.name, std::regex("[/,;\"]"), "_");
+  experiment.scenario = options.scenario;
+  experiment.overrides = options.overrides;
   draft.relative_uncertainty = options.relative_uncertainty;
   for (const auto& [name, value] : table) {
     const auto& chosen = options.observables;
     if (chosen.empty() ? is_of_the_core(name) : std::find(chosen.begin(), chosen.end(), name) != chosen.end())
-      draft.observables[name] = value;
+      experiment.observables[name] = value;
   }
+  draft.experiments.push_back(std::move(experiment));
   if (!prepare_folder(options.out, options.force)) return kBadInput;
   const std::vector<std::string> left_out = scree::write_dataset(draft, options.out);
   if (!left_out.empty())

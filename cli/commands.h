@@ -87,7 +87,36 @@ struct AnalyseOptions {
   std::optional<double> relative_uncertainty;  ///< of values with one repeat
 };
 
+struct DiagnoseOptions {
+  std::vector<std::filesystem::path> datasets;
+  std::filesystem::path model;
+  std::vector<std::string> without;  ///< effects that are not considered
+  std::filesystem::path store;       ///< empty: runs/store.sqlite
+  std::filesystem::path out;         ///< empty: a free runs/NAME
+  int jobs = 0;                      ///< runs side by side; 0: as many as cores
+  bool plan = false;                 ///< say what it will cost, run nothing
+  bool again = false;                ///< try runs that failed before again
+  bool force = false;                ///< write into a folder that is not empty
+};
+
+struct TwinOptions {
+  std::filesystem::path model;
+  std::vector<std::string> effects;   ///< names, or none, or random
+  std::string strength = "random";    ///< weak, medium, strong, random, or a number
+  int repeats = 5;                    ///< of every experiment
+  double noise = 0.5;                 ///< of a measurement, over the scatter between seeds
+  std::optional<std::uint64_t> seed;  ///< none: of the clock
+  std::string engine;                 ///< that makes the data; empty: that of the scenarios
+  std::filesystem::path store;        ///< empty: runs/store.sqlite
+  std::filesystem::path out;          ///< empty: a free runs/twin
+  std::filesystem::path answer;       ///< empty: OUT.answer.json
+  int jobs = 0;                       ///< runs side by side; 0: as many as cores
+  bool force = false;                 ///< write into a folder that is not empty
+};
+
 int run_analyse(const AnalyseOptions& options);
+int run_diagnose(const DiagnoseOptions& options);
+int run_twin(const TwinOptions& options);
 int run_run(const RunOptions& options);
 int run_compare(const std::filesystem::path& dir, const std::vector<std::string>& cases);
 int run_validate(const std::filesystem::path& file, const std::vector<std::string>& overrides);

@@ -29,6 +29,7 @@ Examples:
   scree calibrate scenarios/calibrations/lab_angle.yaml  friction from a measured repose angle
   scree compare runs/canadian_malartic_10m               the comparison of a run, as a table
   scree analyse heap.csv --scenario scenarios/repose_lab.yaml   what a pile of another program gives
+  scree diagnose data.yaml --model model.yaml            which effect the model lacks, if any
   scree validate scenarios/a1_10m.yaml                   check a file without running it
   scree schema > scenario.schema.json                    for editors that know JSON Schema
 )";
@@ -218,6 +219,65 @@ int main(int argc, char** argv) {
       "measured\n"
       "  scree analyse dump.lammpstrj --experiment repose_lift --length-unit mm --up y\n");
 
+  DiagnoseOptions diagnose;
+  CLI::App* diagnose_app = app.add_subcommand(
+      "diagnose", "Find where simulation and measurement disagree, and which effect the model lacks");
+  diagnose_app->add_option("datasets", diagnose.datasets, "Dataset files (YAML)")->required();
+  diagnose_app
+      ->add_option("--model", diagnose.model, "Model file (YAML): parameters and effects that are looked for")
+      ->required();
+  diagnose_app->add_option("--without", diagnose.without, "Effects that are not considered")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  diagnose_app->add_flag("--plan", diagnose.plan, "Say how many simulations it needs and how long; run none");
+  diagnose_app->add_option("--store", diagnose.store, "Results store; default: runs/store.sqlite");
+  diagnose_app->add_option("--out", diagnose.out, "Folder for the report; default: a free runs/NAME");
+  diagnose_app->add_option("--jobs", diagnose.jobs, "Runs side by side; default: as many as cores")
+      ->check(CLI::Range(1, 1024));
+  diagnose_app->add_flag("--again", diagnose.again, "Try runs that failed before again");
+  diagnose_app->add_flag("--force", diagnose.force, "Write into --out even if it holds something");
+  diagnose_app->footer(
+      "\nExamples:\n"
+      "  scree diagnose assets/datasets/laboratory/dataset.yaml --model scenarios/models/laboratory.yaml "
+      "--plan\n"
+      "  scree diagnose heap.yaml buckets.yaml --model scenarios/models/laboratory.yaml\n"
+      "\nAn interrupted diagnosis goes on where it stopped when it is started again.\n");
+
+  TwinOptions twin;
+  CLI::App* twin_app =
+      app.add_subcommand("twin", "Make data with a hidden effect, to see whether diagnose finds it");
+  twin_app->add_option("model", twin.model, "Model file (YAML) with experiments")->required();
+  twin_app
+      ->add_option("--effect", twin.effects,
+                   "Effect that is hidden, or none, or random; may be repeated; default: random")
+      ->allow_extra_args(false);
+  twin_app
+      ->add_option("--strength", twin.strength,
+                   "weak, medium, strong (2, 4, 8 standard uncertainties), random, or a number")
+      ->capture_default_str();
+  twin_app->add_option("--repeats", twin.repeats, "Of every experiment")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
+  twin_app->add_option("--noise", twin.noise, "Error of a measurement, in standard deviations between seeds")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  twin_app->add_option("--seed", twin.seed, "Draws all that is random; default: another every time")
+      ->check(CLI::Range(0, 1'000'000'000));
+  twin_app->add_option("--engine", twin.engine, "Engine that makes the data")
+      ->check(CLI::IsMember({"rrlinear", "impulse"}));
+  twin_app->add_option("--store", twin.store, "Results store of the model; default: runs/store.sqlite");
+  twin_app->add_option("--out", twin.out,
+                       "Folder for dataset.yaml and observables.csv; default: a free runs/twin");
+  twin_app->add_option("--answer", twin.answer, "File for the sealed answer; default: OUT.answer.json");
+  twin_app->add_option("--jobs", twin.jobs, "Runs side by side; default: as many as cores")
+      ->check(CLI::Range(1, 1024));
+  twin_app->add_flag("--force", twin.force, "Write into --out even if it holds something");
+  twin_app->footer(
+      "\nExamples:\n  scree twin scenarios/models/small_laboratory.yaml\n"
+      "  scree twin scenarios/models/small_laboratory.yaml --effect cohesion --strength strong --seed 7 "
+      "--out "
+      "measured\n");
+
   CLI::App* schema_app = app.add_subcommand("schema", "Print the JSON Schema of scenario files");
 
   try {
@@ -228,7 +288,7 @@ int main(int argc, char** argv) {
     if (names_one && app.get_subcommands().empty()) {
       fmt::print(stderr,
                  "scree: {}: no such subcommand; there are run, sweep, reproduce, study, calibrate, predict, "
-                 "compare, analyse, validate and schema\n",
+                 "compare, analyse, diagnose, twin, validate and schema\n",
                  argv[1]);
       return kBadInput;
     }
@@ -250,6 +310,8 @@ int main(int argc, char** argv) {
     if (*compare_app) return run_compare(compare_dir, compare_cases);
     if (*validate_app) return run_validate(validate_file, validate_overrides);
     if (*analyse_app) return run_analyse(analyse);
+    if (*diagnose_app) return run_diagnose(diagnose);
+    if (*twin_app) return run_twin(twin);
     if (*schema_app) return run_schema();
   } catch (const std::exception& error) {
     fmt::print(stderr, "scree: {}\n", error.what());

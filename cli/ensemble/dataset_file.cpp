@@ -23,27 +23,9 @@ void read_experiments(const YamlNode& root, const fs::path& file, const fs::path
   const YamlNode* experiments =
       reader.map_at(root, "experiments", true, "a map from names to {scenario: FILE, set: {KEY: VALUE}}");
   if (experiments == nullptr) return;
-  for (const YamlEntry& entry : experiments->entries) {
-    if (entry.key.empty() || entry.key.find_first_of("/,;\"") != std::string::npos)
-      reader.fail(entry.key_place,
-                  fmt::format("experiments: the name {} must be a word without / , ; \"", shown(entry.key)));
-    if (entry.value.kind != YamlKind::map) {
-      reader.fail(entry.value.place,
-                  fmt::format("experiments.{}: a map with a scenario is expected, found {}", entry.key,
-                              found(entry.value)));
-      continue;
-    }
-    reader.allow(entry.value, {"scenario", "set"}, " in experiment " + entry.key);
-    const auto scenario = scenario_at(entry.value, file, true, reader);
-    const Variation variation = read_variation(entry.value, {}, reader);
-    if (!scenario) continue;
-    ScenarioResult loaded = load_scenario(*scenario, variation.fixed, asset_dir);
-    for (const ScenarioError& error : loaded.errors)
-      reader.fail(entry.value.place,
-                  fmt::format("experiments.{} is no scenario: {}", entry.key, error.text()));
-    if (loaded.errors.empty())
-      dataset.experiments.push_back({entry.key, *scenario, variation.fixed, std::move(loaded.scenario)});
-  }
+  for (const YamlEntry& entry : experiments->entries)
+    if (auto experiment = read_experiment(entry, file, asset_dir, {"scenario", "set"}, reader))
+      dataset.experiments.push_back(std::move(*experiment));
 }
 
 // The table named at a key, relative to the file that names it.
@@ -75,6 +57,29 @@ std::optional<double> default_uncertainty(const YamlNode& root, FileReader& read
 }
 
 }  // namespace
+
+std::optional<Dataset::Experiment> read_experiment(const YamlEntry& entry, const fs::path& file,
+                                                   const fs::path& asset_dir,
+                                                   const std::vector<std::string>& allowed,
+                                                   FileReader& reader) {
+  if (entry.key.empty() || entry.key.find_first_of("/,;\"") != std::string::npos)
+    reader.fail(entry.key_place,
+                fmt::format("experiments: the name {} must be a word without / , ; \"", shown(entry.key)));
+  if (entry.value.kind != YamlKind::map) {
+    reader.fail(entry.value.place, fmt::format("experiments.{}: a map with a scenario is expected, found {}",
+                                               entry.key, found(entry.value)));
+    return std::nullopt;
+  }
+  reader.allow(entry.value, allowed, " in experiment " + entry.key);
+  const auto scenario = scenario_at(entry.value, file, true, reader);
+  const Variation variation = read_variation(entry.value, {}, reader);
+  if (!scenario) return std::nullopt;
+  ScenarioResult loaded = load_scenario(*scenario, variation.fixed, asset_dir);
+  for (const ScenarioError& error : loaded.errors)
+    reader.fail(entry.value.place, fmt::format("experiments.{} is no scenario: {}", entry.key, error.text()));
+  if (!loaded.errors.empty()) return std::nullopt;
+  return Dataset::Experiment{entry.key, *scenario, variation.fixed, std::move(loaded.scenario)};
+}
 
 DatasetResult load_dataset(const fs::path& file, const fs::path& asset_dir) {
   DatasetResult result;

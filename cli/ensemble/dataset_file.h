@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/ensemble/file_reader.h"
 #include "sim/scene/scenario.h"
 
 namespace scree {
@@ -61,6 +62,13 @@ struct DatasetResult {
 /// The standard uncertainty of a value is `uncertainty` where given, else std / sqrt(repeats), else std alone
 /// (which becomes a note), else that of the covariance, else the default.
 DatasetResult load_dataset(const std::filesystem::path& file, const std::filesystem::path& asset_dir);
+
+/// One entry of `experiments`: a name and its scenario, relative to `file`; none, with errors, if it is not
+/// one. `allowed`: its keys.
+std::optional<Dataset::Experiment> read_experiment(const YamlEntry& entry, const std::filesystem::path& file,
+                                                   const std::filesystem::path& asset_dir,
+                                                   const std::vector<std::string>& allowed,
+                                                   FileReader& reader);
 
 /// Whether a YAML file is meant to be a dataset: it has the key `observables`. False if it cannot be read.
 bool is_dataset(const std::filesystem::path& file);

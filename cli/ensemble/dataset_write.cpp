@@ -28,30 +28,34 @@ std::vector<std::string> write_dataset(const DatasetDraft& draft, const fs::path
   std::string table = "experiment,observable,value,unit,std,repeats\n";
   std::vector<std::string> left_out;
   int rows = 0;
-  for (const auto& [name, measured] : draft.observables) {
-    const bool scatters = measured.n > 1 && measured.std > 0;
-    if (!scatters && !(draft.relative_uncertainty && measured.n == 1 && measured.mean != 0)) {
-      left_out.push_back(name);
-      continue;
+  for (const DatasetDraft::Experiment& experiment : draft.experiments)
+    for (const auto& [name, measured] : experiment.observables) {
+      const bool scatters = measured.n > 1 && measured.std > 0;
+      if (!scatters && !(draft.relative_uncertainty && measured.n == 1 && measured.mean != 0)) {
+        left_out.push_back(experiment.name + "/" + name);
+        continue;
+      }
+      const std::string unit = unit_of_output(name);
+      table += fmt::format("{},{},{:.9g},{},{},{}\n", experiment.name, name, measured.mean,
+                           unit.empty() ? "-" : unit, scatters ? fmt::format("{:.6g}", measured.std) : "",
+                           measured.n);
+      ++rows;
     }
-    const std::string unit = unit_of_output(name);
-    table += fmt::format("{},{},{:.9g},{},{},{}\n", draft.experiment, name, measured.mean,
-                         unit.empty() ? "-" : unit, scatters ? fmt::format("{:.6g}", measured.std) : "",
-                         measured.n);
-    ++rows;
-  }
   if (rows == 0)
     throw std::runtime_error(
         "no observable scatters between the repeats: there is nothing to write a dataset of");
-  const fs::path scenario = fs::absolute(draft.scenario).lexically_normal();
   const fs::path from = fs::absolute(folder).lexically_normal();
-  std::string yaml = fmt::format("title: {}\nsource: {}\nexperiments:\n  {}:\n    scenario: {}\n",
-                                 in_quotes(draft.title), in_quotes(draft.source), in_quotes(draft.experiment),
-                                 in_quotes(scenario.lexically_relative(from).generic_string()));
-  if (!draft.overrides.empty()) yaml += "    set:\n";
-  for (const std::string& text : draft.overrides) {
-    const auto at = text.find('=');
-    yaml += fmt::format("      {}: {}\n", text.substr(0, at), text.substr(at + 1));
+  std::string yaml =
+      fmt::format("title: {}\nsource: {}\nexperiments:\n", in_quotes(draft.title), in_quotes(draft.source));
+  for (const DatasetDraft::Experiment& experiment : draft.experiments) {
+    const fs::path scenario = fs::absolute(experiment.scenario).lexically_normal();
+    yaml += fmt::format("  {}:\n    scenario: {}\n", in_quotes(experiment.name),
+                        in_quotes(scenario.lexically_relative(from).generic_string()));
+    if (!experiment.overrides.empty()) yaml += "    set:\n";
+    for (const std::string& text : experiment.overrides) {
+      const auto at = text.find('=');
+      yaml += fmt::format("      {}: {}\n", text.substr(0, at), text.substr(at + 1));
+    }
   }
   yaml += "observables: observables.csv\n";
   if (draft.relative_uncertainty)

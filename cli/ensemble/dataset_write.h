@@ -12,15 +12,20 @@ namespace scree {
 
 /// What a dataset is made of.
 struct DatasetDraft {
-  std::string title, source, experiment;
-  std::filesystem::path scenario;
-  std::vector<std::string> overrides;  ///< "key=value"
-  std::map<std::string, MeanStd> observables;
+  struct Experiment {
+    std::string name;
+    std::filesystem::path scenario;
+    std::vector<std::string> overrides;  ///< "key=value"
+    std::map<std::string, MeanStd> observables;
+  };
+  std::string title, source;
+  std::vector<Experiment> experiments;
   std::optional<double> relative_uncertainty;  ///< of those with one repeat
 };
 
 /// Writes dataset.yaml and observables.csv into a folder that is there. Observables without a scatter between
-/// repeats have no uncertainty: they are left out unless `relative_uncertainty` is given, and returned.
+/// repeats have no uncertainty: they are left out unless `relative_uncertainty` is given, and returned, as
+/// experiment/observable.
 /// Throws std::runtime_error if nothing is left or a file cannot be written.
 std::vector<std::string> write_dataset(const DatasetDraft& draft, const std::filesystem::path& folder);
 

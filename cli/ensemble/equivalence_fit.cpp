@@ -79,9 +79,10 @@ class AngleMap {
 };
 
 /// Sets the node's coefficients of Bullet to those on its ray that give rrlinear's angle and are nearest to
-/// (mu, mu_r); false if none in the range searched do.
+/// (mu, mu_r), or, if Bullet never gives that angle there, to those that come nearest to it; false if these
+/// stay farther off than `within`.
 bool solve(const EquivalenceSpec& spec, const AngleMap& bullet, EquivalenceNode& node) {
-  double best = nan, before_factor = nan, before = nan;
+  double best = nan, nearest = nan, least = spec.within, before_factor = nan, before = nan;
   for (int k = 0; k <= kRaySteps; ++k) {
     const double factor = 0.2 * std::pow(25.0, static_cast<double>(k) / kRaySteps);  // 0.2 to 5
     const double friction = factor * node.mu, rolling = factor * node.mu_r;
@@ -92,9 +93,14 @@ bool solve(const EquivalenceSpec& spec, const AngleMap& bullet, EquivalenceNode&
       const double root = before_factor + (factor - before_factor) * before / (before - here);
       if (std::isfinite(root) && !(std::abs(std::log(root)) > std::abs(std::log(best)))) best = root;
     }
+    if (std::abs(here) <= least) {
+      least = std::abs(here);
+      nearest = factor;
+    }
     before_factor = factor;
     before = here;
   }
+  if (!std::isfinite(best)) best = nearest;
   if (!std::isfinite(best)) return false;
   node.friction = best * node.mu;
   node.rolling = best * node.mu_r;

@@ -1,0 +1,388 @@
+#include "analysis/diagnose/diagnosis.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+
+namespace scree {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// Prior probabilities; the last three are shared by all of their kind.
+constexpr double kPriorCalibration = 0.4, kPriorUnknown = 0.1, kPriorOne = 0.4, kPriorTwo = 0.1;
+constexpr std::size_t kPairsOfBest = 4;  // pairs are tried that hold one of the best so many effects
+constexpr double kLogUnknownLow = 0,
+                 kLogUnknownHigh = 8;   // of the variance of what is unknown, over the data's
+constexpr std::uint64_t kSeed = 20177;  // of the integrals
+constexpr double kStep = 0.05;          // of a numerical derivative by a coordinate
+
+double p_of(double chi2, int freedom) {
+  if (freedom < 1 || !(chi2 > 0)) return 1;
+  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), chi2));
+}
+
+Gap gap_of(double chi2, int numbers, int fitted) {
+  const int freedom = std::max(numbers - fitted, 1);
+  return {chi2, freedom, p_of(chi2, freedom)};
+}
+
+// Chi-square and logarithm of the normal density, in units of `scale`.
+struct Normal {
+  double chi2, log_density;
+};
+Normal normal(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance,
+              const Eigen::VectorXd& scale) {
+  const Eigen::VectorXd d = difference.cwiseQuotient(scale);
+  const Eigen::MatrixXd c =
+      scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal();
+  const Eigen::LLT<Eigen::MatrixXd> factor(c);
+  const double chi2 = factor.matrixL().solve(d).squaredNorm();
+  return {chi2, -0.5 * chi2 - factor.matrixLLT().diagonal().array().log().sum()};
+}
+
+std::vector<Eigen::Index> everything(Eigen::Index n) {
+  std::vector<Eigen::Index> all(static_cast<std::size_t>(n));
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+// The likelihood of a hypothesis by its parameters, of some of the values.
+class Likelihood {
+ public:
+  Likelihood(const ModelSpace& space, const LearntModel& model, const Measurements& measured,
+             const Eigen::MatrixXd& covariance, std::vector<Eigen::Index> which)
+      : space_(space), model_(model), which_(std::move(which)) {
+    value_ = measured.vector()(which_);
+    covariance_ = covariance(which_, which_);
+    scale_ = covariance_.diagonal().cwiseSqrt();
+  }
+
+  ParameterBox box(const Hypothesis& h) const {
+    std::vector<double> low(space_.base.size(), -1.0), high(space_.base.size(), 1.0);
+    for (const std::size_t e : h.effects) {
+      const CandidateEffect& effect = space_.effects[e];
+      low.push_back(effect.lowest());
+      high.push_back(effect.highest());
+      for (std::size_t k = 1; k < effect.axes.size(); ++k) low.push_back(-1), high.push_back(1);
+    }
+    if (h.unknown) low.push_back(kLogUnknownLow), high.push_back(kLogUnknownHigh);
+    const auto n = static_cast<Eigen::Index>(low.size());
+    return {Eigen::Map<Eigen::VectorXd>(low.data(), n), Eigen::Map<Eigen::VectorXd>(high.data(), n)};
+  }
+  ModelPoint point(const Hypothesis& h, const Eigen::VectorXd& x) const {
+    const auto p = static_cast<Eigen::Index>(space_.base.size());
+    ModelPoint point{x.head(p), {}};
+    Eigen::Index next = p;
+    for (const std::size_t e : h.effects) {
+      const auto count = static_cast<Eigen::Index>(space_.effects[e].axes.size());
+      point.effects.push_back({e, x.segment(next, count)});
+      next += count;
+    }
+    return point;
+  }
+  Normal at(const Hypothesis& h, const Eigen::VectorXd& x) const {
+    const SurfacePrediction all = model_.at(point(h, x));
+    Eigen::MatrixXd covariance = covariance_ + all.covariance(which_, which_);
+    if (h.unknown) covariance.diagonal() += std::exp(x[x.size() - 1]) * covariance_.diagonal();
+    return normal(value_ - all.mean(which_), covariance, scale_);
+  }
+  Evidence evidence(const Hypothesis& h) const {
+    return integrate([&](const Eigen::VectorXd& x) { return at(h, x).log_density; }, box(h), kSeed);
+  }
+  int numbers() const { return static_cast<int>(which_.size()); }
+
+ private:
+  const ModelSpace& space_;
+  const LearntModel& model_;
+  std::vector<Eigen::Index> which_;
+  Eigen::VectorXd value_, scale_;
+  Eigen::MatrixXd covariance_;
+};
+
+Judgement judge(const ModelSpace& space, const Likelihood& likelihood, const Hypothesis& hypothesis) {
+  Judgement j;
+  j.hypothesis = hypothesis;
+  j.evidence = likelihood.evidence(hypothesis);
+  j.best = likelihood.point(hypothesis, j.evidence.most_likely);
+  const int fitted = static_cast<int>(j.evidence.most_likely.size()) - (hypothesis.unknown ? 1 : 0);
+  Hypothesis known = hypothesis;
+  known.unknown = false;
+  j.gap = gap_of(likelihood.at(known, j.evidence.most_likely).chi2, likelihood.numbers(), fitted);
+  Eigen::Index next = 0;
+  const auto interval = [&](auto&& value) {
+    Judgement::Interval i{value(j.evidence.quantile(next, 0.05)), value(j.evidence.quantile(next, 0.5)),
+                          value(j.evidence.quantile(next, 0.95))};
+    if (i.low > i.high) std::swap(i.low, i.high);
+    ++next;
+    return i;
+  };
+  for (const BaseAxis& axis : space.base) j.base.push_back(interval([&](double x) { return axis.value(x); }));
+  for (const std::size_t e : hypothesis.effects) {
+    j.effects.emplace_back();
+    for (std::size_t k = 0; k < space.effects[e].axes.size(); ++k)
+      j.effects.back().push_back(interval([&](double x) { return space.effects[e].value(k, x); }));
+  }
+  return j;
+}
+
+// Change of the values by the effects at a point, in standard uncertainties, without what the base parameters
+// can make up for (to first order).
+Eigen::VectorXd signature(const ModelSpace& space, const LearntModel& model,
+                          const Eigen::MatrixXd& covariance, const ModelPoint& point) {
+  const SurfacePrediction with = model.at(point);
+  const Eigen::VectorXd without = model.at({point.base, {}}).mean;
+  const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
+  const Eigen::LLT<Eigen::MatrixXd> factor(
+      Eigen::MatrixXd(scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal()));
+  const auto whitened = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+    return factor.matrixL().solve(x.cwiseQuotient(scale));
+  };
+  const auto p = static_cast<Eigen::Index>(space.base.size());
+  Eigen::MatrixXd slopes(with.mean.size(), p);
+  for (Eigen::Index k = 0; k < p; ++k) {
+    ModelPoint up{point.base, {}}, down = up;
+    up.base[k] += kStep;
+    down.base[k] -= kStep;
+    slopes.col(k) = whitened((model.at(up).mean - model.at(down).mean) / (2 * kStep));
+  }
+  const Eigen::VectorXd change = whitened(with.mean - without);
+  return change - slopes * slopes.colPivHouseholderQr().solve(change);
+}
+
+double rms(const Eigen::VectorXd& x) {
+  return x.size() > 0 ? x.norm() / std::sqrt(static_cast<double>(x.size())) : 0.0;
+}
+
+// Numbers, and parts of them, at the nominal parameters.
+void find(const ModelSpace& space, const LearntModel& model, Diagnosis& d) {
+  const SurfacePrediction here = model.at({space.nominal(), {}});
+  const Eigen::VectorXd difference = d.measured.vector() - here.mean;
+  const Eigen::MatrixXd covariance = d.covariance + here.covariance;
+  const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
+  const auto n = static_cast<int>(difference.size());
+  d.nominal = gap_of(normal(difference, covariance, scale).chi2, n, 0);
+  std::map<std::string, std::vector<Eigen::Index>> parts;
+  for (int k = 0; k < n; ++k) {
+    const MeasuredValue& value = d.measured.values[static_cast<std::size_t>(k)];
+    const double z = difference[k] / scale[k];
+    d.numbers.push_back({value.label, difference[k], z, gap_of(z * z, 1, 0), false});
+    parts["experiment " + d.measured.experiments[value.experiment]].push_back(k);
+    if (const std::string section = section_of_output(value.output); !section.empty())
+      parts["section " + section].push_back(k);
+    parts["quantity " + quantity_of_output(value.output)].push_back(k);
+  }
+  for (const auto& [name, which] : parts)
+    d.parts.push_back({name, nan, nan,
+                       gap_of(normal(difference(which), covariance(which, which), scale(which)).chi2,
+                              static_cast<int>(which.size()), 0),
+                       false});
+  const auto mark = [](std::vector<Disagreement>& all) {
+    std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.gap.p < b.gap.p; });
+    double harmonic = 0;
+    for (std::size_t k = 1; k <= all.size(); ++k) harmonic += 1.0 / static_cast<double>(k);
+    std::size_t last = 0;
+    for (std::size_t k = 1; k <= all.size(); ++k)
+      if (all[k - 1].gap.p <=
+          kFalseDiscoveries * static_cast<double>(k) / (static_cast<double>(all.size()) * harmonic))
+        last = k;
+    for (std::size_t k = 0; k < last; ++k) all[k].significant = true;
+  };
+  mark(d.numbers);
+  mark(d.parts);
+  std::sort(d.numbers.begin(), d.numbers.end(),
+            [](const auto& a, const auto& b) { return std::abs(a.z) > std::abs(b.z); });
+}
+
+bool is_effect(const Judgement& j) {
+  return !j.hypothesis.effects.empty() && !j.hypothesis.unknown;
+}
+
+bool holds(const Hypothesis& larger, const Hypothesis& smaller) {
+  return std::includes(larger.effects.begin(), larger.effects.end(), smaller.effects.begin(),
+                       smaller.effects.end());
+}
+
+DiagnosisVerdict verdict_of(const Diagnosis& d) {
+  using Kind = DiagnosisVerdict::Kind;
+  if (d.nominal.p > kNothingAbove) return {Kind::nothing, {}};
+  if (d.calibration.gap.p > kFitsAbove) return {Kind::calibration, {}};
+  const auto& all = d.judgements;
+  std::size_t first = all.size();
+  double unknown = 0;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (all[k].hypothesis.unknown) unknown = all[k].probability;
+    if (first == all.size() && is_effect(all[k]) && all[k].gap.p > kFitsAbove) first = k;
+  }
+  if (first == all.size() || unknown > all[first].probability) return {Kind::unknown, {}};
+  DiagnosisVerdict verdict{Kind::effect, {first}};
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (k != first && is_effect(all[k]) && all[k].gap.p > kFitsAbove &&
+        !holds(all[k].hypothesis, all[first].hypothesis) &&
+        all[k].probability * kApartBy > all[first].probability)
+      verdict.named.push_back(k);
+  if (verdict.named.size() > 1) verdict.kind = Kind::group;
+  return verdict;
+}
+
+}  // namespace
+
+LearntModel::LearntModel(const ModelSpace& space, const std::vector<std::string>& experiments,
+                         const DesignRuns& runs) {
+  for (std::size_t e = 0; e < experiments.size(); ++e) surfaces_.emplace_back(space, experiments[e], runs[e]);
+}
+
+SurfacePrediction LearntModel::at(const ModelPoint& point) const {
+  Eigen::Index n = 0, first = 0;
+  for (const ResponseSurface& surface : surfaces_) n += surface.outputs();
+  SurfacePrediction all{Eigen::VectorXd(n), Eigen::MatrixXd::Zero(n, n)};
+  for (const ResponseSurface& surface : surfaces_) {
+    const SurfacePrediction here = surface.at(point);
+    all.mean.segment(first, surface.outputs()) = here.mean;
+    all.covariance.block(first, first, surface.outputs(), surface.outputs()) = here.covariance;
+    first += surface.outputs();
+  }
+  return all;
+}
+
+std::vector<const ResponseSurface*> LearntModel::surfaces() const {
+  std::vector<const ResponseSurface*> all;
+  for (const ResponseSurface& surface : surfaces_) all.push_back(&surface);
+  return all;
+}
+
+Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model) {
+  Diagnosis d;
+  d.measured = measured;
+  d.covariance = working_covariance(measured, model.surfaces());
+  const Likelihood likelihood(space, model, measured, d.covariance,
+                              everything(static_cast<Eigen::Index>(measured.values.size())));
+  find(space, model, d);
+  d.calibration = judge(space, likelihood, {{}, false, kPriorCalibration});
+  const std::size_t count = space.effects.size();
+  std::vector<Judgement> ones;
+  for (std::size_t e = 0; e < count; ++e)
+    ones.push_back(judge(space, likelihood, {{e}, false, kPriorOne / static_cast<double>(count)}));
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return ones[a].evidence.log_evidence > ones[b].evidence.log_evidence;
+  });
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  if (d.calibration.gap.p <= kFitsAbove)
+    for (std::size_t k = 0; k < std::min(kPairsOfBest, count); ++k)
+      for (std::size_t e = 0; e < count; ++e) {
+        const std::pair<std::size_t, std::size_t> pair(std::min(order[k], e), std::max(order[k], e));
+        if (e != order[k] && std::find(pairs.begin(), pairs.end(), pair) == pairs.end())
+          pairs.emplace_back(pair);
+      }
+  const double all_pairs = 0.5 * static_cast<double>(count) * (static_cast<double>(count) - 1);
+  for (const auto& [a, b] : pairs)
+    d.judgements.push_back(judge(space, likelihood, {{a, b}, false, kPriorTwo / all_pairs}));
+  d.judgements.insert(d.judgements.end(), ones.begin(), ones.end());
+  d.judgements.push_back(d.calibration);
+  d.judgements.push_back(judge(space, likelihood, {{}, true, kPriorUnknown}));
+
+  const auto weight = [](const Judgement& j) {
+    return std::log(j.hypothesis.prior) + j.evidence.log_evidence;
+  };
+  double most = -std::numeric_limits<double>::infinity(), sum = 0;
+  for (const Judgement& j : d.judgements) most = std::max(most, weight(j));
+  for (const Judgement& j : d.judgements) sum += std::exp(weight(j) - most);
+  for (Judgement& j : d.judgements) {
+    j.probability = std::exp(weight(j) - most) / sum;
+    j.signature = rms(signature(space, model, d.covariance, j.best));
+    if (j.hypothesis.effects.empty() && !j.hypothesis.unknown) d.calibration.probability = j.probability;
+  }
+  std::stable_sort(d.judgements.begin(), d.judgements.end(),
+                   [](const auto& a, const auto& b) { return a.probability > b.probability; });
+
+  std::vector<Eigen::VectorXd> signatures;
+  for (const Judgement& one : ones) {
+    Eigen::VectorXd s = signature(space, model, d.covariance, {d.calibration.best.base, one.best.effects});
+    signatures.push_back(s.norm() > 0 ? Eigen::VectorXd(s.normalized()) : s);
+  }
+  const auto n = static_cast<Eigen::Index>(count);
+  d.cosine = Eigen::MatrixXd::Constant(n, n, nan);
+  for (Eigen::Index a = 0; a < n; ++a)
+    for (Eigen::Index b = 0; b < n; ++b) {
+      const auto &first = signatures[static_cast<std::size_t>(a)],
+                 &second = signatures[static_cast<std::size_t>(b)];
+      if (first.norm() > 0 && second.norm() > 0) d.cosine(a, b) = first.dot(second);
+    }
+  d.verdict = verdict_of(d);
+  return d;
+}
+
+HeldOut held_out(const ModelSpace& space, const Diagnosis& d, const LearntModel& model,
+                 const Hypothesis& hypothesis) {
+  const auto n = static_cast<Eigen::Index>(d.measured.values.size());
+  std::map<std::string, std::vector<Eigen::Index>> parts;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const MeasuredValue& value = d.measured.values[static_cast<std::size_t>(k)];
+    if (d.measured.experiments.size() > 1)
+      parts["experiment " + d.measured.experiments[value.experiment]].push_back(k);
+    else if (const std::string section = section_of_output(value.output); !section.empty())
+      parts["section " + section].push_back(k);
+    else
+      parts[value.label].push_back(k);
+  }
+  HeldOut result;
+  const Eigen::VectorXd values = d.measured.vector();
+  for (const auto& [name, which] : parts) {
+    std::vector<Eigen::Index> rest;
+    for (Eigen::Index k = 0; k < n; ++k)
+      if (std::find(which.begin(), which.end(), k) == which.end()) rest.push_back(k);
+    if (rest.empty()) continue;
+    const Likelihood likelihood(space, model, d.measured, d.covariance, rest);
+    const Evidence evidence = likelihood.evidence(hypothesis);
+    // Mean and covariance over the posterior of the rest.
+    const auto m = static_cast<Eigen::Index>(which.size());
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(m);
+    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(m, m), within = square;
+    for (Eigen::Index s = 0; s < evidence.samples.rows(); ++s) {
+      const double w = evidence.weights[s];
+      if (w < 1e-6) continue;
+      const SurfacePrediction here = model.at(likelihood.point(hypothesis, evidence.samples.row(s)));
+      const Eigen::VectorXd at = here.mean(which);
+      mean += w * at;
+      square += w * at * at.transpose();
+      within += w * here.covariance(which, which);
+    }
+    const Eigen::MatrixXd covariance = d.covariance(which, which) + within + square - mean * mean.transpose();
+    const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
+    const double chi2 = normal(values(which) - mean, covariance, scale).chi2;
+    result.parts.push_back(name);
+    result.gaps.push_back(gap_of(chi2, static_cast<int>(m), 0));
+    result.chi2 += chi2;
+    result.count += static_cast<int>(m);
+  }
+  return result;
+}
+
+Gap simulated_gap(const Diagnosis& d, const LearntModel& model, const Eigen::VectorXd& mean, int runs,
+                  int fitted) {
+  Eigen::MatrixXd covariance = d.covariance;
+  Eigen::Index first = 0;
+  for (const ResponseSurface* surface : model.surfaces()) {
+    const Eigen::Index n = surface->outputs();
+    covariance.block(first, first, n, n) += surface->scatter() / runs;
+    first += n;
+  }
+  const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
+  return gap_of(normal(d.measured.vector() - mean, covariance, scale).chi2, static_cast<int>(mean.size()),
+                fitted);
+}
+
+double detectability(const ModelSpace& space, const LearntModel& model, const Eigen::MatrixXd& covariance,
+                     const ModelPoint& point) {
+  return rms(signature(space, model, covariance, point));
+}
+
+}  // namespace scree

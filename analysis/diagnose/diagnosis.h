@@ -1,0 +1,130 @@
+#pragma once
+// What measurements say of a model: where it disagrees, whether its parameters can mend that, which effect
+// can, and what cannot be told.
+#include <Eigen/Dense>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/diagnose/evidence.h"
+#include "analysis/diagnose/measurements.h"
+#include "analysis/diagnose/model_space.h"
+
+namespace scree {
+
+// The rules by which something is said; docs/diagnose.md states them.
+inline constexpr double kNothingAbove = 0.05;  ///< probability of the gap at the nominal parameters, or more
+inline constexpr double kFitsAbove = 0.01;     ///< the same of a fitted model: it explains the data
+inline constexpr double kSureAbove = 0.9;      ///< probability of a hypothesis that is named alone
+inline constexpr double kApartBy = 10;         ///< ratio of probabilities below which two are not told apart
+inline constexpr double kFalseDiscoveries = 0.1;  ///< expected share of false alarms in the map
+
+/// Distance of a model from the data.
+struct Gap {
+  double chi2 = 0;
+  int freedom = 0;  ///< numbers less what was fitted
+  double p = 1;     ///< probability of as much by chance
+};
+
+/// Where the nominal model disagrees: one number, or several together.
+struct Disagreement {
+  std::string where;      ///< label of a number; or "experiment heap", "section S6", "quantity chi"
+  double difference = 0;  ///< measured less simulated; a single number only
+  double z = 0;           ///< over its standard deviation; a single number only
+  Gap gap;
+  bool significant =
+      false;  ///< with the rate of false discoveries at kFalseDiscoveries (Benjamini-Yekutieli)
+};
+
+/// A model that might be true.
+struct Hypothesis {
+  std::vector<std::size_t> effects;  ///< that are there, by rising index; none: calibration alone
+  bool unknown = false;              ///< something that is not in the library
+  double prior = 0;
+};
+
+/// What the data say of a hypothesis.
+struct Judgement {
+  Hypothesis hypothesis;
+  Evidence evidence;  ///< samples: base coordinates, then those of each effect's parameters; unknown: log of
+                      ///< its size
+  double probability = 0;  ///< of this hypothesis among all
+  ModelPoint best;         ///< most likely
+  Gap gap;                 ///< there
+  struct Interval {
+    double low, middle, high;
+  };
+  std::vector<Interval> base;                  ///< of each base parameter, in its unit: 5, 50 and 95 %
+  std::vector<std::vector<Interval>> effects;  ///< of each effect's parameters
+  double signature =
+      0;  ///< root mean square change by the effects, in standard uncertainties, after compensation
+};
+
+/// How well a hypothesis foretells what it was not fitted to: parts of the data left out in turn.
+struct HeldOut {
+  std::vector<std::string> parts;  ///< left out: "experiment heap", "section S6"
+  std::vector<Gap> gaps;           ///< of each
+  double chi2 = 0;                 ///< sum
+  int count = 0;                   ///< numbers
+  double gap() const { return std::max(0.0, chi2 - count); }
+};
+
+/// A number that was not measured and would tell hypotheses apart.
+struct NextMeasurement {
+  std::string label;
+  double difference =
+      0;  ///< between what two hypotheses foretell, over the standard deviation of five repeats
+  std::vector<double> foretold;  ///< by hypothesis, as asked
+};
+
+struct DiagnosisVerdict {
+  enum class Kind { nothing, calibration, effect, group, unknown } kind = Kind::nothing;
+  std::vector<std::size_t> named;  ///< judgements, most probable first; one of `effect`, several of `group`
+};
+
+struct Diagnosis {
+  Measurements measured;
+  Eigen::MatrixXd covariance;  ///< of the measured values, as used
+  Gap nominal;
+  std::vector<Disagreement> numbers;  ///< by falling |z|
+  std::vector<Disagreement> parts;    ///< experiments, sections, quantities
+  Judgement calibration;
+  std::vector<Judgement> judgements;  ///< calibration, effects, pairs, unknown: by falling probability
+  DiagnosisVerdict verdict;
+  Eigen::MatrixXd cosine;  ///< between signatures of the space's effects, after compensation; NaN without one
+};
+
+/// What simulations gave: of every experiment of the measurements, in the order of its values.
+using DesignRuns = std::vector<std::vector<DesignRun>>;
+
+/// The model as learnt from simulations.
+class LearntModel {
+ public:
+  /// Throws std::invalid_argument, see ResponseSurface.
+  LearntModel(const ModelSpace& space, const std::vector<std::string>& experiments, const DesignRuns& runs);
+  /// Of all values, in their order.
+  SurfacePrediction at(const ModelPoint& point) const;
+  std::vector<const ResponseSurface*> surfaces() const;
+
+ private:
+  std::vector<ResponseSurface> surfaces_;
+};
+
+/// Finds, re-calibrates and names.
+Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model);
+
+/// Every experiment left out in turn; with one experiment every section, else every number.
+HeldOut held_out(const ModelSpace& space, const Diagnosis& diagnosis, const LearntModel& model,
+                 const Hypothesis& hypothesis);
+
+/// Chi-square of the measured values and what simulations at the fitted model gave: `mean` over `runs` seeds
+/// of each experiment, whose scatter is added; `fitted` parameters.
+Gap simulated_gap(const Diagnosis& diagnosis, const LearntModel& model, const Eigen::VectorXd& mean, int runs,
+                  int fitted);
+
+/// Root mean square change of the measured numbers by the effects at a point, in standard uncertainties, as
+/// far as other base parameters cannot make up for it.
+double detectability(const ModelSpace& space, const LearntModel& model, const Eigen::MatrixXd& covariance,
+                     const ModelPoint& point);
+
+}  // namespace scree

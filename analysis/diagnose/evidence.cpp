@@ -1,0 +1,206 @@
+#include "analysis/diagnose/evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "sim/material/random.h"
+
+namespace scree {
+namespace {
+
+constexpr int kFirst = 768, kStage = 384;  // samples: of the prior, of each stage
+constexpr int kLastStages = 3;             // at full temperature; the evidence is theirs
+constexpr int kMostStages = 30;
+constexpr double kLeastShare = 0.15;  // of samples that must count, for a step of temperature
+constexpr double kWiden = 1.3;        // covariance of the proposal over that of the samples
+constexpr double kDefensive = 0.1;    // share of the proposal that is the prior
+constexpr double kFreedom = 5;        // of Student's t
+constexpr double kNever = -1e300;
+
+double log_sum(const std::vector<double>& logs) {
+  const double most = *std::max_element(logs.begin(), logs.end());
+  double sum = 0;
+  for (const double x : logs) sum += std::exp(x - most);
+  return most + std::log(sum);
+}
+
+double effective_share(const std::vector<double>& log_weights) {
+  const double all = log_sum(log_weights);
+  double square = 0;
+  for (const double w : log_weights) square += std::exp(2 * (w - all));
+  return 1 / (square * static_cast<double>(log_weights.size()));
+}
+
+// Student's t about a mean, mixed with the prior; normal numbers by Box and Muller.
+class Proposal {
+ public:
+  Proposal(const ParameterBox& box, Eigen::VectorXd mean, const Eigen::MatrixXd& covariance)
+      : box_(box), mean_(std::move(mean)), factor_(covariance) {
+    const double d = static_cast<double>(mean_.size());
+    log_scale_ = std::lgamma(0.5 * (kFreedom + d)) - std::lgamma(0.5 * kFreedom) -
+                 0.5 * d * std::log(kFreedom * std::numbers::pi) -
+                 factor_.matrixLLT().diagonal().array().log().sum();
+    log_prior_ = -(box.high - box.low).array().log().sum();
+  }
+  Eigen::VectorXd draw(Random& random) const {
+    const Eigen::Index d = mean_.size();
+    Eigen::VectorXd x(d);
+    if (random.uniform() < kDefensive) {
+      for (Eigen::Index k = 0; k < d; ++k)
+        x[k] = box_.low[k] + random.uniform() * (box_.high[k] - box_.low[k]);
+      return x;
+    }
+    for (Eigen::Index k = 0; k < d; ++k) x[k] = normal(random);
+    double chi2 = 0;
+    for (int k = 0; k < static_cast<int>(kFreedom); ++k) {
+      const double z = normal(random);
+      chi2 += z * z;
+    }
+    return mean_ + factor_.matrixL() * x * std::sqrt(kFreedom / chi2);
+  }
+  double log_density(const Eigen::VectorXd& x) const {
+    const double d = static_cast<double>(mean_.size());
+    const double square = factor_.matrixL().solve(x - mean_).squaredNorm();
+    const double t = log_scale_ - 0.5 * (kFreedom + d) * std::log1p(square / kFreedom);
+    return log_sum({std::log(1 - kDefensive) + t, std::log(kDefensive) + log_prior_});
+  }
+
+ private:
+  static double normal(Random& random) {
+    return std::sqrt(-2 * std::log(1 - random.uniform())) * std::cos(2 * std::numbers::pi * random.uniform());
+  }
+  const ParameterBox& box_;
+  Eigen::VectorXd mean_;
+  Eigen::LLT<Eigen::MatrixXd> factor_;
+  double log_scale_ = 0, log_prior_ = 0;
+};
+
+struct Sample {
+  Eigen::VectorXd at;
+  double log_likelihood;
+  double log_proposal;  // density it was drawn from
+};
+
+bool inside(const Eigen::VectorXd& x, const ParameterBox& box) {
+  return (x.array() >= box.low.array()).all() && (x.array() <= box.high.array()).all();
+}
+
+std::vector<double> log_weights(const std::vector<Sample>& samples, double temperature, double log_prior) {
+  std::vector<double> logs;
+  for (const Sample& s : samples)
+    logs.push_back(s.log_likelihood <= kNever ? kNever
+                                              : temperature * s.log_likelihood + log_prior - s.log_proposal);
+  return logs;
+}
+
+Proposal proposal_of(const std::vector<Sample>& samples, const std::vector<double>& logs,
+                     const ParameterBox& box) {
+  const double all = log_sum(logs);
+  const Eigen::Index d = box.low.size();
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(d);
+  for (std::size_t k = 0; k < samples.size(); ++k) mean += std::exp(logs[k] - all) * samples[k].at;
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(d, d);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const Eigen::VectorXd off = samples[k].at - mean;
+    covariance += std::exp(logs[k] - all) * off * off.transpose();
+  }
+  covariance *= kWiden;
+  for (Eigen::Index k = 0; k < d; ++k) {
+    const double width = box.high[k] - box.low[k];
+    covariance(k, k) += 1e-8 * width * width;
+  }
+  return {box, mean, covariance};
+}
+
+}  // namespace
+
+Eigen::VectorXd Evidence::mean() const {
+  return samples.transpose() * weights;
+}
+
+double Evidence::quantile(Eigen::Index parameter, double share) const {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(samples.rows()));
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](Eigen::Index a, Eigen::Index b) { return samples(a, parameter) < samples(b, parameter); });
+  double sum = 0;
+  for (const Eigen::Index k : order) {
+    sum += weights[k];
+    if (sum >= share) return samples(k, parameter);
+  }
+  return samples(order.back(), parameter);
+}
+
+Evidence integrate(const std::function<double(const Eigen::VectorXd&)>& log_likelihood,
+                   const ParameterBox& box, std::uint64_t seed) {
+  Random random(seed, 0, RandomPurpose::design);
+  const Eigen::Index d = box.low.size();
+  const double log_prior = -(box.high - box.low).array().log().sum();
+  std::vector<Sample> samples;
+  for (int k = 0; k < kFirst; ++k) {  // a Latin line a dimension would gain little: the next stages adapt
+    Eigen::VectorXd x(d);
+    for (Eigen::Index j = 0; j < d; ++j) x[j] = box.low[j] + random.uniform() * (box.high[j] - box.low[j]);
+    samples.push_back({x, log_likelihood(x), log_prior});
+  }
+  double temperature = 0;
+  int last = 0;
+  std::vector<std::vector<Sample>> full;  // stages at full temperature
+  std::vector<Proposal> proposals;        // of them
+  for (int stage = 0; stage < kMostStages && last < kLastStages; ++stage) {
+    if (temperature < 1) {
+      const auto share = [&](double t) { return effective_share(log_weights(samples, t, log_prior)); };
+      double low = temperature, high = 1;
+      if (share(1) >= kLeastShare || stage == kMostStages - kLastStages - 1)
+        low = 1;
+      else
+        for (int k = 0; k < 30; ++k) {
+          const double middle = 0.5 * (low + high);
+          (share(middle) >= kLeastShare ? low : high) = middle;
+        }
+      temperature = std::max(low, temperature + 1e-6);
+    }
+    const Proposal proposal = proposal_of(samples, log_weights(samples, temperature, log_prior), box);
+    samples.clear();
+    for (int k = 0; k < kStage; ++k) {
+      const Eigen::VectorXd x = proposal.draw(random);
+      samples.push_back({x, inside(x, box) ? log_likelihood(x) : kNever, proposal.log_density(x)});
+    }
+    if (temperature >= 1) {
+      full.push_back(samples);
+      proposals.push_back(proposal);
+      ++last;
+    }
+  }
+  // Every sample of the last stages, as if drawn from the mixture of their proposals.
+  std::vector<double> logs;
+  std::vector<const Sample*> kept;
+  Evidence evidence;
+  double best = -std::numeric_limits<double>::infinity();
+  for (const auto& stage : full)
+    for (const Sample& s : stage) {
+      std::vector<double> densities;
+      for (const Proposal& p : proposals) densities.push_back(p.log_density(s.at));
+      const double mixture = log_sum(densities) - std::log(static_cast<double>(proposals.size()));
+      logs.push_back(s.log_likelihood <= kNever ? kNever : s.log_likelihood + log_prior - mixture);
+      kept.push_back(&s);
+      if (s.log_likelihood > best) {
+        best = s.log_likelihood;
+        evidence.most_likely = s.at;
+      }
+    }
+  const double all = log_sum(logs), count = static_cast<double>(logs.size());
+  evidence.log_evidence = all - std::log(count);
+  evidence.samples.resize(static_cast<Eigen::Index>(kept.size()), d);
+  evidence.weights.resize(static_cast<Eigen::Index>(kept.size()));
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    evidence.samples.row(static_cast<Eigen::Index>(k)) = kept[k]->at.transpose();
+    evidence.weights[static_cast<Eigen::Index>(k)] = std::exp(logs[k] - all);
+  }
+  evidence.log_error = std::sqrt(std::max(evidence.weights.squaredNorm() - 1 / count, 0.0));
+  return evidence;
+}
+
+}  // namespace scree

@@ -1,0 +1,43 @@
+#pragma once
+// What a diagnosis ends with, and its report.
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/diagnose/diagnosis.h"
+
+namespace scree {
+
+/// A model as the full simulator shows it.
+struct SimulatedModel {
+  ModelPoint at;
+  int runs = 0;               ///< seeds of each experiment
+  Eigen::VectorXd mean, std;  ///< by measured value; over seeds
+  Gap gap;
+};
+
+struct DiagnosisOutcome {
+  ModelSpace space;
+  Diagnosis diagnosis;
+  SimulatedModel nominal;
+  std::optional<SimulatedModel> calibrated, augmented;  ///< where there was a gap; where an effect was named
+  std::optional<HeldOut> held_out_calibrated, held_out_augmented;
+  std::vector<NextMeasurement> next;  ///< for a group: what would tell its members apart, best first
+  int rounds = 0;                     ///< of naming and simulating what was named
+  bool settled = true;                ///< the last round changed nothing
+  int simulations = 0;                ///< used
+  std::vector<std::string> notes;
+};
+
+/// The answer in plain words: a paragraph, then a line each of what else there is to say.
+std::vector<std::string> diagnosis_in_words(const DiagnosisOutcome& outcome);
+
+/// Values of a model's parameters: key of the scenario and value, base parameters first.
+std::vector<std::pair<std::string, double>> values_at(const ModelSpace& space, const ModelPoint& point);
+
+/// Writes report.html and diagnosis.json into a folder that is there. Throws std::runtime_error.
+void write_diagnosis(const std::string& title, const DiagnosisOutcome& outcome,
+                     const std::filesystem::path& folder);
+
+}  // namespace scree

@@ -1,0 +1,329 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "analysis/diagnose/words.h"
+#include "analysis/report_page.h"
+#include "analysis/report_text.h"
+#include "sim/io/text_file.h"
+
+namespace scree {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostCandidates = 12;  // rows of the table
+
+Json json_of(const Gap& gap) {
+  return {{"chi2", gap.chi2}, {"freedom", gap.freedom}, {"p", gap.p}};
+}
+
+Json json_of(const Judgement::Interval& i) {
+  return {{"low", i.low}, {"middle", i.middle}, {"high", i.high}};
+}
+
+Json json_of(const ModelSpace& space, const Judgement& j) {
+  Json json;
+  json["name"] = name_of(space, j.hypothesis);
+  json["effects"] = Json::array();
+  for (const std::size_t e : j.hypothesis.effects) json["effects"].push_back(space.effects[e].name);
+  json["unknown"] = j.hypothesis.unknown;
+  json["probability"] = j.probability;
+  json["log_evidence"] = j.evidence.log_evidence;
+  json["prior"] = j.hypothesis.prior;
+  json["gap"] = json_of(j.gap);
+  json["signature"] = j.signature;
+  for (std::size_t k = 0; k < space.base.size(); ++k)
+    json["parameters"][space.base[k].key] = json_of(j.base[k]);
+  for (std::size_t k = 0; k < j.hypothesis.effects.size(); ++k) {
+    const CandidateEffect& effect = space.effects[j.hypothesis.effects[k]];
+    for (std::size_t a = 0; a < effect.axes.size(); ++a)
+      json["parameters"][effect.axes[a].key] = json_of(j.effects[k][a]);
+  }
+  return json;
+}
+
+Json json_of(const ModelSpace& space, const std::vector<MeasuredValue>& values, const SimulatedModel& m) {
+  Json json;
+  json["seeds"] = m.runs;
+  json["gap"] = json_of(m.gap);
+  for (const auto& [key, value] : values_at(space, m.at)) json["parameters"][key] = value;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    json["numbers"][values[k].label] = {{"mean", m.mean[static_cast<Eigen::Index>(k)]},
+                                        {"std", m.std[static_cast<Eigen::Index>(k)]}};
+  return json;
+}
+
+Json json_of(const HeldOut& held) {
+  Json json{{"chi2", held.chi2}, {"count", held.count}, {"gap", held.gap()}};
+  for (std::size_t k = 0; k < held.parts.size(); ++k) json["parts"][held.parts[k]] = json_of(held.gaps[k]);
+  return json;
+}
+
+const char* word(DiagnosisVerdict::Kind kind) {
+  switch (kind) {
+    case DiagnosisVerdict::Kind::nothing:
+      return "nothing";
+    case DiagnosisVerdict::Kind::calibration:
+      return "calibration";
+    case DiagnosisVerdict::Kind::effect:
+      return "effect";
+    case DiagnosisVerdict::Kind::group:
+      return "group";
+    case DiagnosisVerdict::Kind::unknown:
+      return "unknown";
+  }
+  return "";
+}
+
+Json json_of(const DiagnosisOutcome& o) {
+  const Diagnosis& d = o.diagnosis;
+  Json json;
+  json["verdict"] = word(d.verdict.kind);
+  json["named"] = Json::array();
+  for (const std::size_t k : d.verdict.named)
+    json["named"].push_back(name_of(o.space, d.judgements[k].hypothesis));
+  json["words"] = diagnosis_in_words(o);
+  json["nominal_gap"] = json_of(d.nominal);
+  json["calibration"] = json_of(o.space, d.calibration);
+  for (const Judgement& j : d.judgements) json["hypotheses"].push_back(json_of(o.space, j));
+  for (const Disagreement& each : d.numbers)
+    json["where"].push_back({{"number", each.where},
+                             {"difference", each.difference},
+                             {"z", each.z},
+                             {"p", each.gap.p},
+                             {"significant", each.significant}});
+  for (const Disagreement& each : d.parts)
+    json["where_parts"].push_back(
+        {{"part", each.where}, {"gap", json_of(each.gap)}, {"significant", each.significant}});
+  for (std::size_t k = 0; k < d.measured.values.size(); ++k) {
+    const MeasuredValue& value = d.measured.values[k];
+    const auto at = static_cast<Eigen::Index>(k);
+    json["measured"].push_back({{"number", value.label},
+                                {"value", value.value},
+                                {"stated_uncertainty", value.uncertainty},
+                                {"uncertainty", std::sqrt(d.covariance(at, at))}});
+  }
+  json["nominal"] = json_of(o.space, d.measured.values, o.nominal);
+  if (o.calibrated) json["calibrated"] = json_of(o.space, d.measured.values, *o.calibrated);
+  if (o.augmented) json["augmented"] = json_of(o.space, d.measured.values, *o.augmented);
+  if (o.held_out_calibrated) json["held_out_calibrated"] = json_of(*o.held_out_calibrated);
+  if (o.held_out_augmented) json["held_out_augmented"] = json_of(*o.held_out_augmented);
+  for (std::size_t a = 0; a < o.space.effects.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      if (const double c = d.cosine(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+          std::isfinite(c))
+        json["cosine"][o.space.effects[a].name][o.space.effects[b].name] = c;
+  for (const NextMeasurement& each : o.next)
+    json["next"].push_back(
+        {{"number", each.label}, {"difference", each.difference}, {"foretold", each.foretold}});
+  json["rounds"] = o.rounds;
+  json["settled"] = o.settled;
+  json["simulations"] = o.simulations;
+  json["notes"] = o.notes;
+  return json;
+}
+
+// Residual of every number, in standard deviations, before and after.
+Picture draw_residuals(const DiagnosisOutcome& o, const fs::path& folder) {
+  const Diagnosis& d = o.diagnosis;
+  const auto n = d.measured.values.size();
+  struct Series {
+    const char *name, *style;
+    const SimulatedModel* model;
+  };
+  std::vector<Series> series{{"nominal", "pt 7 ps 0.7 lc rgb '#999999'", &o.nominal}};
+  if (o.calibrated) series.push_back({"re-calibrated", "pt 5 ps 0.7 lc rgb '#d95f02'", &*o.calibrated});
+  if (o.augmented) series.push_back({"with the effect", "pt 9 ps 0.9 lc rgb '#1b6ca8'", &*o.augmented});
+  std::string script = chart_terminal(760, 120 + 22 * static_cast<int>(n)), tics, plots;
+  double most = 3;
+  for (std::size_t s = 0; s < series.size(); ++s) {
+    script += fmt::format("$s{} << EOD\n", s);
+    for (std::size_t k = 0; k < n; ++k) {
+      const auto at = static_cast<Eigen::Index>(k);
+      const SimulatedModel& m = *series[s].model;
+      const double u = std::sqrt(d.covariance(at, at) + m.std[at] * m.std[at] / m.runs);
+      const double z = (d.measured.values[k].value - m.mean[at]) / u;
+      most = std::max(most, std::abs(z) * 1.05);
+      script += fmt::format("{:.6g} {}\n", z, n - k);
+    }
+    script += "EOD\n";
+    plots += fmt::format("{}$s{} using 1:2 with points {} title {}", s == 0 ? "" : ", ", s, series[s].style,
+                         gnuplot_quoted(series[s].name));
+  }
+  for (std::size_t k = 0; k < n; ++k)
+    tics += fmt::format("{}{} {}", k == 0 ? "" : ", ", gnuplot_quoted(d.measured.values[k].label), n - k);
+  script += fmt::format(
+      "set xrange [{}:{}]\nset yrange [0.3:{}]\nset ytics ({})\nset key top outside horizontal\n"
+      "set xlabel 'measured less simulated, in standard deviations'\n"
+      "set object 1 rect from -2,graph 0 to 2,graph 1 fc rgb '#eef4ee' fs solid noborder behind\n"
+      "set arrow 1 from 0,graph 0 to 0,graph 1 nohead lc rgb '#666666'\nplot {}",
+      -most, most, static_cast<double>(n) + 0.7, tics, plots);
+  const fs::path file = folder / "residuals.svg";
+  run_gnuplot(script, file);
+  return {"Before and after", file,
+          "Every measured number against the full simulator: nominal parameters, best parameters without any "
+          "effect, "
+          "and with the effect named. Within the band of two standard deviations a number agrees."};
+}
+
+std::string candidates_table(const DiagnosisOutcome& o) {
+  std::string rows;
+  std::size_t count = 0;
+  for (const Judgement& j : o.diagnosis.judgements) {
+    if (count++ >= kMostCandidates) break;
+    const std::string values = values_in_words(o.space, j);
+    rows += fmt::format(
+        "<tr><td class=\"word\">{}</td><td>{}</td><td>{} on {}</td><td>{}</td><td "
+        "class=\"word\">{}</td></tr>\n",
+        html_escaped(name_of(o.space, j.hypothesis)), decimals_text(j.probability, 3),
+        number_text(j.gap.chi2), j.gap.freedom, p_text(j.gap.p), html_escaped(values.empty() ? "–" : values));
+  }
+  return fmt::format(
+      "<h2>What might be missing</h2>\n<p>Every model is fitted to all numbers, its parameters and the "
+      "effect's "
+      "together. p: probability of a gap this large by chance; a model with p below {} does not explain the "
+      "data. "
+      "In brackets 90 % of the probability.</p>\n"
+      "<div class=\"wide\"><table><thead><tr><th class=\"word\">Hypothesis</th><th>Probability</th>"
+      "<th>chi-square</th><th>p</th><th "
+      "class=\"word\">Values</th></tr></thead><tbody>\n{}</tbody></table></div>\n",
+      kFitsAbove, rows);
+}
+
+std::string where_tables(const Diagnosis& d) {
+  std::string parts, numbers;
+  for (const Disagreement& each : d.parts)
+    parts += fmt::format("<tr{}><td class=\"word\">{}</td><td>{} on {}</td><td>{}</td></tr>\n",
+                         each.significant ? " class=\"differs\"" : "", html_escaped(each.where),
+                         number_text(each.gap.chi2), each.gap.freedom, p_text(each.gap.p));
+  return fmt::format(
+      "<h2>Where the nominal model disagrees</h2>\n<p>Shaded: not by chance, with {:.0f} % of false alarms "
+      "among the "
+      "shaded at most to be expected.</p>\n<div class=\"wide\"><table><thead><tr><th class=\"word\">Part</th>"
+      "<th>chi-square</th><th>p</th></tr></thead><tbody>\n{}</tbody></table></div>\n",
+      100 * kFalseDiscoveries, parts);
+}
+
+std::string numbers_table(const DiagnosisOutcome& o) {
+  const Diagnosis& d = o.diagnosis;
+  std::string rows;
+  const auto cell = [&](const std::optional<SimulatedModel>& m, Eigen::Index k, double measured) {
+    if (!m) return std::string("<td>–</td><td>–</td>");
+    const double u = std::sqrt(d.covariance(k, k) + m->std[k] * m->std[k] / m->runs);
+    return fmt::format("<td>{}</td><td>{:+.1f}</td>", number_text(m->mean[k]), (measured - m->mean[k]) / u);
+  };
+  for (std::size_t i = 0; i < d.measured.values.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const MeasuredValue& value = d.measured.values[i];
+    rows += fmt::format("<tr><td class=\"word\">{}</td><td>{}</td><td>{}</td>{}{}{}</tr>\n",
+                        html_escaped(value.label), number_text(value.value),
+                        number_text(std::sqrt(d.covariance(k, k))), cell(o.nominal, k, value.value),
+                        cell(o.calibrated, k, value.value), cell(o.augmented, k, value.value));
+  }
+  return fmt::format(
+      "<h2>Every number</h2>\n<p>z: measured less simulated, over its standard deviation.</p>\n<div "
+      "class=\"wide\"><table><thead><tr><th class=\"word\">Number</th><th>Measured</th><th>Uncertainty</th>"
+      "<th>Nominal</th><th>z</th><th>Re-calibrated</th><th>z</th><th>With the "
+      "effect</th><th>z</th></tr></thead>"
+      "<tbody>\n{}</tbody></table></div>\n",
+      rows);
+}
+
+std::string held_out_table(const DiagnosisOutcome& o) {
+  if (!o.held_out_calibrated || !o.held_out_augmented) return {};
+  std::string rows;
+  const HeldOut &before = *o.held_out_calibrated, &after = *o.held_out_augmented;
+  for (std::size_t k = 0; k < before.parts.size(); ++k)
+    rows += fmt::format("<tr><td class=\"word\">{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+                        html_escaped(before.parts[k]), before.gaps[k].freedom,
+                        number_text(before.gaps[k].chi2), number_text(after.gaps[k].chi2));
+  rows += fmt::format("<tr><td class=\"word\">all</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", before.count,
+                      number_text(before.chi2), number_text(after.chi2));
+  return "<h2>What was not used</h2>\n<p>Each part is left out in turn, the model fitted to the rest, and "
+         "the part "
+         "foretold. A model that is right has a chi-square near the count of numbers.</p>\n<div "
+         "class=\"wide\"><table>"
+         "<thead><tr><th class=\"word\">Left out</th><th>Numbers</th><th>Re-calibrated alone</th>"
+         "<th>With the effect</th></tr></thead><tbody>\n" +
+         rows + "</tbody></table></div>\n";
+}
+
+std::string alike_table(const DiagnosisOutcome& o) {
+  struct Pair {
+    std::size_t a, b;
+    double cosine;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t a = 0; a < o.space.effects.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b) {
+      const double c = o.diagnosis.cosine(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+      if (std::isfinite(c) && std::abs(c) > 0.8) pairs.push_back({a, b, c});
+    }
+  std::string text;
+  if (!pairs.empty()) {
+    std::sort(pairs.begin(), pairs.end(),
+              [](const auto& x, const auto& y) { return std::abs(x.cosine) > std::abs(y.cosine); });
+    text =
+        "<h2>What looks alike</h2>\n<p>Effects whose change of these numbers, after re-calibration, points "
+        "nearly "
+        "the same way (cosine 1) or the opposite one (&minus;1): these data tell them apart only if the "
+        "change is "
+        "large.</p>\n<ul>\n";
+    for (const Pair& pair : pairs)
+      text += fmt::format("<li>{} and {}: {}</li>\n", o.space.effects[pair.a].name,
+                          o.space.effects[pair.b].name, decimals_text(pair.cosine, 2));
+    text += "</ul>\n";
+  }
+  if (!o.next.empty()) {
+    text +=
+        "<h2>What to measure next</h2>\n<p>Numbers of the same experiments that were not measured; "
+        "difference "
+        "between what the candidates foretell, in standard deviations with five repeats.</p>\n<ul>\n";
+    for (const NextMeasurement& each : o.next)
+      text += fmt::format("<li>{}: {}</li>\n", html_escaped(each.label), number_text(each.difference, 2));
+    text += "</ul>\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, double>> values_at(const ModelSpace& space, const ModelPoint& point) {
+  std::vector<std::pair<std::string, double>> values;
+  for (std::size_t k = 0; k < space.base.size(); ++k)
+    values.emplace_back(space.base[k].key, space.base[k].value(point.base[static_cast<Eigen::Index>(k)]));
+  for (const EffectAt& there : point.effects) {
+    const CandidateEffect& effect = space.effects[there.effect];
+    for (std::size_t k = 0; k < effect.axes.size(); ++k)
+      values.emplace_back(effect.axes[k].key, effect.value(k, there.at[static_cast<Eigen::Index>(k)]));
+  }
+  return values;
+}
+
+void write_diagnosis(const std::string& title, const DiagnosisOutcome& o, const fs::path& folder) {
+  write_text_file(folder / "diagnosis.json", json_of(o).dump(2) + "\n");
+  const fs::path pictures = folder / "pictures";
+  fs::create_directories(pictures);
+  const std::vector<std::string> words = diagnosis_in_words(o);
+  std::string body;
+  for (const std::string& line : words) body += fmt::format("<p>{}</p>\n", html_escaped(line));
+  body += figure(draw_residuals(o, pictures)) + candidates_table(o) + where_tables(o.diagnosis) +
+          alike_table(o) + held_out_table(o) + numbers_table(o);
+  if (!o.notes.empty()) {
+    body += "<h2>Notes</h2>\n<ul>\n";
+    for (const std::string& note : o.notes) body += fmt::format("<li>{}</li>\n", html_escaped(note));
+    body += "</ul>\n";
+  }
+  write_text_file(
+      folder / "report.html",
+      html_page(title,
+                fmt::format("{} measured numbers, {} effects looked for, {} simulations",
+                            o.diagnosis.measured.values.size(), o.space.effects.size(), o.simulations),
+                body));
+}
+
+}  // namespace scree

@@ -1,0 +1,87 @@
+#pragma once
+// What an experiment gives over the parameters of the base model and the amplitudes of effects, learnt from
+// simulations whose numbers scatter from seed to seed.
+//
+// Each output is a polynomial of the coordinates with Gaussian priors on its coefficients: third order in the
+// base parameters, third order in an effect's amplitude, products of the amplitude with the base parameters,
+// with the effect's other parameters and with the amplitudes of other effects. An effect that is absent
+// changes nothing. How large the coefficients of the base and of each effect are a priori, and how large the
+// scatter is, are those of the largest marginal likelihood. Outputs of one run are correlated: the
+// polynomials are those of combinations of the outputs whose scatter is not.
+// Source: Rasmussen & Williams, Gaussian Processes for Machine Learning (2006), 2.1 and 5.4; Higdon et al.,
+// J. Am. Stat. Assoc. 103 (2008), for several outputs.
+#include <Eigen/Dense>
+#include <string>
+#include <vector>
+
+#include "analysis/diagnose/model_space.h"
+
+namespace scree {
+
+/// A simulation and what it gave.
+struct DesignRun {
+  ModelPoint at;
+  Eigen::VectorXd outputs;  ///< finite
+};
+
+/// Mean over many seeds, and how well it is known.
+struct SurfacePrediction {
+  Eigen::VectorXd mean;        ///< by output
+  Eigen::MatrixXd covariance;  ///< of the mean: what is not known of it
+};
+
+class ResponseSurface {
+ public:
+  /// `experiment` chooses the effects that act. Throws std::invalid_argument with fewer runs than base
+  /// coefficients.
+  ResponseSurface(const ModelSpace& space, const std::string& experiment, const std::vector<DesignRun>& runs);
+
+  SurfacePrediction at(const ModelPoint& point) const;
+  /// Covariance of one run about the mean: between seeds.
+  const Eigen::MatrixXd& scatter() const { return scatter_; }
+  Eigen::Index outputs() const { return scatter_.rows(); }
+  /// Root mean square over runs of the difference to what the others predict, over its standard deviation, by
+  /// combination of outputs; near 1 if the polynomials are good enough.
+  const Eigen::VectorXd& leave_one_out() const { return leave_one_out_; }
+
+  /// Fewest runs without effects for so many base parameters.
+  static int least_base_runs(std::size_t base_parameters);
+
+ private:
+  struct Term {                   // a monomial
+    int group;                    // whose size its prior has: 0: base, 1 + k: effect k of the space
+    int second_group;             // -1, or that of the other effect of a product
+    double prior;                 // standard deviation over the size
+    std::vector<int> base_power;  // by base axis
+    int effect = -1, power = 0;   // of the amplitude
+    int other = 0;                // a further parameter of the effect, from 1; 0: none
+    int second = -1;              // the other effect of a product
+  };
+  void make_terms(const ModelSpace& space, const std::vector<DesignRun>& runs);
+  // The terms that do not vanish at a point, and their values.
+  void values(const ModelPoint& point, std::vector<Eigen::Index>& which, std::vector<double>& value) const;
+
+  struct Fit {
+    Eigen::VectorXd mean;        // of the coefficients
+    Eigen::MatrixXd covariance;  // of them
+    Eigen::VectorXd size;        // by group, a priori
+    double scatter;              // variance
+    double freedom;              // runs less coefficients that the data decide
+    Eigen::VectorXd residual;    // by run
+    double leave_one_out;
+  };
+  Fit fit(const Eigen::MatrixXd& features, const Eigen::VectorXd& y) const;
+  double pair_variance(const ModelPoint& point, const Fit& fit) const;
+
+  std::vector<bool> acts_;                        // by effect of the space
+  std::vector<std::pair<int, int>> known_pairs_;  // of effects that were simulated together
+  int groups_ = 1;
+  std::vector<Term> terms_;
+  std::vector<Fit> fits_;       // by combination
+  Eigen::VectorXd centre_;      // of outputs
+  Eigen::MatrixXd to_outputs_;  // outputs - centre = to_outputs * combinations
+  Eigen::MatrixXd scatter_;
+  Eigen::VectorXd leave_one_out_;
+};
+
+}  // namespace scree

@@ -1,0 +1,89 @@
+// scree diagnose: where simulation and measurement disagree, and which effect the model lacks.
+#include <fmt/format.h>
+
+#include "analysis/diagnose/outcome.h"
+#include "cli/commands.h"
+#include "cli/ensemble/diagnosis_session.h"
+#include "cli/ensemble_console.h"
+#include "cli/output_folder.h"
+#include "cli/progress.h"
+#include "cli/run_through.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// What the design costs, and what of it is there.
+void print_plan(const scree::DiagnosisSession& session, const scree::DiagnosisModel& model,
+                const scree::ResultsStore& store) {
+  std::size_t all = 0, there = 0;
+  double left = 0;
+  bool known = true;
+  for (std::size_t e = 0; e < session.design().size(); ++e) {
+    std::size_t here = 0;
+    double seconds = 0;
+    for (const scree::RunRequest& request : session.design()[e].requests)
+      if (const auto result = store.find(request.key); result && result->state == scree::RunState::done) {
+        ++here;
+        seconds += result->wall_seconds;
+      }
+    const std::size_t needed = session.design()[e].requests.size();
+    fmt::print("{:<20} {:>5} simulations, {} in the store", session.data().experiments[e].name, needed, here);
+    if (here > 0) fmt::print(", {} each", scree::spell_duration(seconds / static_cast<double>(here)));
+    fmt::print("\n");
+    all += needed;
+    there += here;
+    if (here > 0)
+      left += seconds / static_cast<double>(here) * static_cast<double>(needed - here);
+    else
+      known = false;
+  }
+  fmt::print("{} simulations, {} of them in the store; then up to {} more of what is named\n", all, there,
+             4 * 2 * model.simulations.check * static_cast<int>(session.design().size()));
+  if (known)
+    fmt::print("about {} of one core are left\n", scree::spell_duration(left));
+  else
+    fmt::print("nothing is known of the time of some experiments yet: their first simulations will tell\n");
+}
+
+}  // namespace
+
+int run_diagnose(const DiagnoseOptions& options) {
+  const scree::DiagnosisModelResult loaded = scree::load_model(options.model, asset_dir());
+  for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
+  if (!loaded.errors.empty()) return kBadInput;
+  std::vector<scree::Dataset> datasets;
+  for (const fs::path& file : options.datasets) {
+    scree::DatasetResult dataset = scree::load_dataset(file, asset_dir());
+    for (const scree::ScenarioError& error : dataset.errors) fmt::print(stderr, "{}\n", error.text());
+    if (!dataset.errors.empty()) return kBadInput;
+    datasets.push_back(std::move(dataset.dataset));
+  }
+  for (const std::string& name : options.without)
+    if (scree::find_effect(name) == nullptr) {
+      fmt::print(stderr, "--without {}: no such effect\n", name);
+      return kBadInput;
+    }
+  scree::DiagnosisSession session(loaded.model, scree::join_datasets(datasets), options.without, asset_dir());
+  const auto store = open_store(options.store, options.plan && fs::exists(options.store));
+  if (!store) return kBadInput;
+  if (options.plan) {
+    print_plan(session, loaded.model, *store);
+    return kOk;
+  }
+  if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
+  scree::DiagnosisOutcome outcome;
+  try {
+    outcome = session.run(run_through(*store, options.jobs, options.again));
+  } catch (const scree::Stopped& stopped) {
+    fmt::print(stderr, "{}\n", stopped.what());
+    return kInterrupted;
+  }
+  const fs::path out = options.out.empty() ? free_run_folder(loaded.model.name) : options.out;
+  if (!prepare_folder(out, options.force)) return kBadInput;
+  for (const std::string& line : scree::diagnosis_in_words(outcome)) fmt::print("{}\n", line);
+  for (const std::string& note : outcome.notes) fmt::print("note: {}\n", note);
+  scree::write_diagnosis(loaded.model.title, outcome, out);
+  fmt::print("report: {}\n", (out / "report.html").string());
+  return kOk;
+}

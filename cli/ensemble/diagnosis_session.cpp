@@ -1,0 +1,414 @@
+#include "cli/ensemble/diagnosis_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "cli/ensemble/design.h"
+#include "cli/ensemble/run_request.h"
+
+namespace scree {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Seeds of simulations; those of `scree twin` are others (twin.cpp).
+constexpr std::uint64_t kBaseSeeds = 500'000, kEffectSeeds = 510'000, kCheckSeeds = 700'000;
+constexpr std::uint64_t kSeedsOfOneEffect = 1000;
+constexpr int kMostRounds = 4;
+constexpr double kRivalBy = 20;  // ratio of probabilities up to which a rival is simulated, too
+constexpr std::size_t kMostRivals = 2;
+constexpr double kMoved = 0.1;        // of a coordinate: a fit has moved, and is simulated anew
+constexpr std::size_t kMostNext = 5;  // measurements proposed
+
+// A number from a name (FNV-1a): an effect's design does not depend on which others there are.
+std::uint64_t hash_of(const std::string& name) {
+  std::uint64_t hash = 0xcbf29ce484222325ull;
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
+  return hash;
+}
+
+Eigen::VectorXd coordinates(const std::vector<double>& unit, std::size_t first, std::size_t count) {
+  Eigen::VectorXd x(static_cast<Eigen::Index>(count));
+  for (std::size_t k = 0; k < count; ++k) x[static_cast<Eigen::Index>(k)] = 2 * unit[first + k] - 1;
+  return x;
+}
+
+// Amplitudes spread evenly over the range, none of them 0.
+double amplitude(const CandidateEffect& effect, int k, int count) {
+  const double low = effect.lowest(), high = effect.highest();
+  const double share = static_cast<double>(k) / (count - 1);
+  if (low >= 0) return high * (k + 1) / count;
+  if (high <= 0) return low * (k + 1) / count;
+  const double here = low + share * (high - low);
+  return std::abs(here) > 1e-6 ? here : 0.5 * high / count;
+}
+
+bool moved(const ModelPoint& a, const ModelPoint& b) {
+  if (a.effects.size() != b.effects.size()) return true;
+  double most = (a.base - b.base).cwiseAbs().maxCoeff();
+  for (std::size_t k = 0; k < a.effects.size(); ++k) {
+    if (a.effects[k].effect != b.effects[k].effect) return true;
+    most = std::max(most, (a.effects[k].at - b.effects[k].at).cwiseAbs().maxCoeff());
+  }
+  return most > kMoved;
+}
+
+bool same(const DiagnosisVerdict& a, const DiagnosisVerdict& b, const Diagnosis& of_a,
+          const Diagnosis& of_b) {
+  if (a.kind != b.kind || a.named.size() != b.named.size()) return false;
+  for (std::size_t k = 0; k < a.named.size(); ++k)
+    if (of_a.judgements[a.named[k]].hypothesis.effects != of_b.judgements[b.named[k]].hypothesis.effects)
+      return false;
+  return true;
+}
+
+// The most probable judgement with effects, whether it explains the data or not.
+const Judgement* best_effect(const Diagnosis& d) {
+  for (const Judgement& j : d.judgements)
+    if (!j.hypothesis.effects.empty()) return &j;
+  return nullptr;
+}
+
+int fitted(const ModelSpace& space, const Judgement& j) {
+  int count = static_cast<int>(space.base.size());
+  for (const std::size_t e : j.hypothesis.effects) count += static_cast<int>(space.effects[e].axes.size());
+  return count;
+}
+
+}  // namespace
+
+std::vector<PlannedRun> design_of(const ModelSpace& space, const SimulationCounts& counts) {
+  std::vector<PlannedRun> runs;
+  std::uint64_t seed = kBaseSeeds;
+  for (int k = 0; k < counts.nominal; ++k) runs.push_back({{space.nominal(), {}}, ++seed});
+  const std::size_t p = space.base.size();
+  for (const auto& unit : sobol(counts.base, static_cast<int>(p)))
+    runs.push_back({{coordinates(unit, 0, p), {}}, ++seed});
+  for (std::size_t e = 0; e < space.effects.size(); ++e) {
+    const CandidateEffect& effect = space.effects[e];
+    const std::size_t others = effect.axes.size() - 1;
+    const std::uint64_t own = hash_of(effect.name);
+    seed = kEffectSeeds + own % 100 * kSeedsOfOneEffect;
+    auto points = latin_hypercube(counts.effect, static_cast<int>(p + others), own);
+    for (int k = 0; k < counts.effect; ++k) {
+      const auto& unit = points[static_cast<std::size_t>(k)];
+      Eigen::VectorXd at(static_cast<Eigen::Index>(1 + others));
+      at << amplitude(effect, k, counts.effect), coordinates(unit, p, others);
+      runs.push_back({{coordinates(unit, 0, p), {{e, at}}}, ++seed});
+    }
+  }
+  return runs;
+}
+
+ExperimentRuns runs_of(const DiagnosisModel& model, const ModelSpace& space,
+                       const Dataset::Experiment& experiment, const std::vector<PlannedRun>& planned,
+                       const fs::path& asset_dir) {
+  ExperimentRuns result;
+  for (const PlannedRun& run : planned) {
+    const auto& effects = run.at.effects;
+    if (!effects.empty() && std::none_of(effects.begin(), effects.end(), [&](const EffectAt& e) {
+          return space.effects[e.effect].acts_in(experiment.name);
+        }))
+      continue;
+    const ScenarioResult loaded =
+        load_scenario(experiment.file, overrides_at(model, space, experiment, run.at), asset_dir);
+    if (!loaded.errors.empty())
+      throw std::runtime_error(
+          fmt::format("experiment {}: {}", experiment.name, loaded.errors.front().text()));
+    result.runs.push_back(run);
+    result.requests.push_back(run_request(loaded.scenario, run.seed, results_version(), asset_dir));
+  }
+  return result;
+}
+
+GatheredRuns gather(const ExperimentRuns& planned, const std::vector<std::optional<StoredResult>>& results,
+                    const std::vector<std::string>& outputs) {
+  GatheredRuns gathered;
+  for (std::size_t k = 0; k < planned.runs.size(); ++k) {
+    const auto& result = results[k];
+    DesignRun run{planned.runs[k].at, Eigen::VectorXd(static_cast<Eigen::Index>(outputs.size()))};
+    bool good = result && result->state == RunState::done && result->at_rest();
+    for (std::size_t c = 0; good && c < outputs.size(); ++c) {
+      const auto found = result->outputs.find(outputs[c]);
+      good = found != result->outputs.end() && std::isfinite(found->second);
+      if (good) run.outputs[static_cast<Eigen::Index>(c)] = found->second;
+    }
+    if (good)
+      gathered.runs.push_back(std::move(run));
+    else
+      ++gathered.left_out;
+  }
+  return gathered;
+}
+
+JoinedData join_datasets(const std::vector<Dataset>& datasets) {
+  JoinedData joined;
+  std::map<std::string, int> names;
+  for (const Dataset& dataset : datasets)
+    for (const Dataset::Experiment& experiment : dataset.experiments) ++names[experiment.name];
+  std::vector<std::pair<const Dataset*, std::size_t>> rows;  // by joined value: where it stands
+  for (const Dataset& dataset : datasets) {
+    for (const std::string& note : dataset.notes) joined.notes.push_back(dataset.name + ": " + note);
+    for (std::size_t e = 0; e < dataset.experiments.size(); ++e) {
+      Dataset::Experiment experiment = dataset.experiments[e];
+      if (names[experiment.name] > 1) experiment.name = dataset.name + "." + experiment.name;
+      bool measured = false;
+      for (std::size_t k = 0; k < dataset.observables.size(); ++k) {
+        const Dataset::Observable& row = dataset.observables[k];
+        if (row.experiment != e) continue;
+        joined.measured.values.push_back({joined.experiments.size(), row.output,
+                                          experiment.name + "/" + row.output, row.value, row.uncertainty,
+                                          row.std, row.repeats});
+        rows.emplace_back(&dataset, k);
+        measured = true;
+      }
+      if (!measured) continue;
+      joined.measured.experiments.push_back(experiment.name);
+      joined.experiments.push_back(std::move(experiment));
+    }
+  }
+  const auto n = static_cast<Eigen::Index>(rows.size());
+  joined.measured.covariance = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index a = 0; a < n; ++a)
+    for (Eigen::Index b = 0; b < n; ++b) {
+      const auto& [first, i] = rows[static_cast<std::size_t>(a)];
+      const auto& [second, j] = rows[static_cast<std::size_t>(b)];
+      if (first == second)
+        joined.measured.covariance(a, b) =
+            first->covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+    }
+  return joined;
+}
+
+DiagnosisSession::DiagnosisSession(const DiagnosisModel& model, JoinedData data,
+                                   const std::vector<std::string>& without, fs::path asset_dir)
+    : model_(model),
+      data_(std::move(data)),
+      asset_dir_(std::move(asset_dir)),
+      space_(space_of(model, data_.experiments, without)) {
+  const std::vector<PlannedRun> planned = design_of(space_, model.simulations);
+  for (const Dataset::Experiment& experiment : data_.experiments)
+    design_.push_back(runs_of(model, space_, experiment, planned, asset_dir_));
+  learnt_.resize(data_.experiments.size());
+  everything_.resize(data_.experiments.size());
+}
+
+void DiagnosisSession::learn_from(const std::vector<ExperimentRuns>& runs, const RunThrough& run,
+                                  DiagnosisOutcome& outcome) {
+  // The short experiments wait for nothing: all runs of all experiments go together.
+  std::vector<RunRequest> all;
+  for (const ExperimentRuns& each : runs) all.insert(all.end(), each.requests.begin(), each.requests.end());
+  const std::vector<std::optional<StoredResult>> results = run(all);
+  std::size_t next = 0;
+  for (std::size_t e = 0; e < runs.size(); ++e) {
+    const std::vector<std::optional<StoredResult>> here(
+        results.begin() + static_cast<std::ptrdiff_t>(next),
+        results.begin() + static_cast<std::ptrdiff_t>(next + runs[e].requests.size()));
+    next += runs[e].requests.size();
+    std::vector<std::string> outputs;
+    for (const MeasuredValue& value : data_.measured.values)
+      if (value.experiment == e) outputs.push_back(value.output);
+    GatheredRuns gathered = gather(runs[e], here, outputs);
+    if (gathered.left_out > 0)
+      outcome.notes.push_back(fmt::format(
+          "{}: {} of {} simulations failed, did not come to rest or lack a measured number; left out",
+          data_.experiments[e].name, gathered.left_out, here.size()));
+    outcome.simulations += static_cast<int>(gathered.runs.size());
+    for (DesignRun& each : gathered.runs) learnt_[e].push_back(std::move(each));
+    for (std::size_t k = 0; k < here.size(); ++k)
+      if (here[k] && here[k]->state == RunState::done && here[k]->at_rest())
+        everything_[e].emplace_back(runs[e].runs[k].at, here[k]->outputs);
+  }
+}
+
+SimulatedModel DiagnosisSession::simulate(const ModelPoint& point, const RunThrough& run,
+                                          DiagnosisOutcome& outcome) {
+  std::vector<PlannedRun> planned;
+  for (int k = 0; k < model_.simulations.check; ++k) planned.push_back({point, kCheckSeeds + ++checks_});
+  std::vector<ExperimentRuns> runs;
+  std::vector<std::size_t> before;
+  for (std::size_t e = 0; e < data_.experiments.size(); ++e) {
+    // An experiment in which the effects do nothing is simulated all the same: it shows the fitted
+    // parameters.
+    ExperimentRuns here = runs_of(model_, space_, data_.experiments[e], planned, asset_dir_);
+    if (here.runs.empty()) {
+      std::vector<PlannedRun> plain = planned;
+      for (PlannedRun& each : plain) each.at.effects.clear();
+      here = runs_of(model_, space_, data_.experiments[e], plain, asset_dir_);
+    }
+    runs.push_back(std::move(here));
+    before.push_back(learnt_[e].size());
+  }
+  learn_from(runs, run, outcome);
+  SimulatedModel simulated;
+  simulated.at = point;
+  simulated.runs = model_.simulations.check;
+  const auto n = static_cast<Eigen::Index>(data_.measured.values.size());
+  simulated.mean.resize(n);
+  simulated.std.resize(n);
+  Eigen::Index next = 0;
+  for (std::size_t e = 0; e < learnt_.size(); ++e) {
+    const auto count = static_cast<Eigen::Index>(learnt_[e].size() - before[e]);
+    simulated.runs = std::min(simulated.runs, static_cast<int>(count));
+    const Eigen::Index width = static_cast<Eigen::Index>(data_.measured.of(e).size());
+    if (count < 2)
+      throw std::runtime_error(fmt::format(
+          "{}: simulations of the fitted model do not give the numbers measured", data_.experiments[e].name));
+    Eigen::MatrixXd y(count, width);
+    for (Eigen::Index k = 0; k < count; ++k)
+      y.row(k) = learnt_[e][before[e] + static_cast<std::size_t>(k)].outputs.transpose();
+    const Eigen::VectorXd mean = y.colwise().mean();
+    simulated.mean.segment(next, width) = mean;
+    simulated.std.segment(next, width) =
+        ((y.rowwise() - mean.transpose()).colwise().squaredNorm() / static_cast<double>(count - 1))
+            .cwiseSqrt();
+    next += width;
+  }
+  return simulated;
+}
+
+std::vector<NextMeasurement> DiagnosisSession::tell_apart(const DiagnosisOutcome& outcome) const {
+  constexpr double kRepeats = 5;
+  const Diagnosis& d = outcome.diagnosis;
+  std::vector<NextMeasurement> all;
+  for (std::size_t e = 0; e < everything_.size(); ++e) {
+    std::set<std::string> measured, names;
+    for (const MeasuredValue& value : data_.measured.values)
+      if (value.experiment == e) measured.insert(value.output);
+    for (const auto& [at, outputs] : everything_[e])
+      for (const auto& [name, value] : outputs) names.insert(name);
+    for (const std::string& name : names) {
+      if (measured.contains(name) || name == "particles" || name == "at_rest" || name == "sections" ||
+          name == "dumps")
+        continue;
+      std::vector<DesignRun> runs;
+      for (const auto& [at, outputs] : everything_[e])
+        if (const auto found = outputs.find(name); found != outputs.end() && std::isfinite(found->second))
+          runs.push_back({at, Eigen::VectorXd::Constant(1, found->second)});
+      const auto plain =
+          std::count_if(runs.begin(), runs.end(), [](const auto& run) { return run.at.effects.empty(); });
+      if (plain < ResponseSurface::least_base_runs(space_.base.size()) ||
+          runs.size() < everything_[e].size() * 4 / 5)
+        continue;
+      const ResponseSurface surface(space_, data_.experiments[e].name, runs);
+      NextMeasurement next{data_.experiments[e].name + "/" + name, 0, {}};
+      std::vector<double> variance;
+      for (const std::size_t k : d.verdict.named) {
+        const SurfacePrediction here = surface.at(d.judgements[k].best);
+        next.foretold.push_back(here.mean[0]);
+        variance.push_back(here.covariance(0, 0));
+      }
+      for (std::size_t a = 0; a < next.foretold.size(); ++a)
+        for (std::size_t b = 0; b < a; ++b) {
+          const double total = variance[a] + variance[b] + surface.scatter()(0, 0) / kRepeats;
+          if (total > 0)
+            next.difference =
+                std::max(next.difference, std::abs(next.foretold[a] - next.foretold[b]) / std::sqrt(total));
+        }
+      all.push_back(std::move(next));
+    }
+  }
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.difference > b.difference; });
+  if (all.size() > kMostNext) all.resize(kMostNext);
+  return all;
+}
+
+DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
+  DiagnosisOutcome outcome;
+  outcome.space = space_;
+  outcome.notes = data_.notes;
+  learn_from(design_, run, outcome);
+  const std::vector<std::string>& names = data_.measured.experiments;
+  const auto learn = [&] {
+    try {
+      return LearntModel(space_, names, learnt_);
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(error.what());
+    }
+  };
+  LearntModel model = learn();
+  Diagnosis d = diagnose(space_, data_.measured, model);
+  const int p = static_cast<int>(space_.base.size());
+  std::optional<SimulatedModel> calibrated, augmented;
+  outcome.settled = d.verdict.kind == DiagnosisVerdict::Kind::nothing;
+  for (int round = 0; round < kMostRounds && !outcome.settled; ++round) {
+    ++outcome.rounds;
+    bool fresh = false;
+    const auto show = [&](const ModelPoint& point, std::optional<SimulatedModel>& shown) {
+      if (shown && !moved(shown->at, point)) return;
+      shown = simulate(point, run, outcome);
+      fresh = true;
+    };
+    show(d.calibration.best, calibrated);
+    if (d.calibration.gap.p <= kFitsAbove)
+      if (const Judgement* lead = best_effect(d)) {
+        show(lead->best, augmented);
+        std::size_t rivals = 0;
+        for (const Judgement& j : d.judgements)
+          if (round == 0 && &j != lead && !j.hypothesis.effects.empty() && rivals < kMostRivals &&
+              j.probability * kRivalBy > lead->probability) {
+            ++rivals;
+            simulate(j.best, run, outcome);
+            fresh = true;
+          }
+      }
+    if (!fresh) {
+      outcome.settled = true;
+      break;
+    }
+    model = learn();
+    Diagnosis again = diagnose(space_, data_.measured, model);
+    const bool unchanged = same(d.verdict, again.verdict, d, again);
+    d = std::move(again);
+    const Judgement* lead = best_effect(d);
+    const bool still = !moved(calibrated->at, d.calibration.best) &&
+                       (!augmented || lead == nullptr || !moved(augmented->at, lead->best));
+    outcome.settled = unchanged && still;
+  }
+  outcome.diagnosis = std::move(d);
+  const Diagnosis& found = outcome.diagnosis;
+  // The nominal model's simulations are those of the design.
+  const auto n = static_cast<Eigen::Index>(data_.measured.values.size());
+  outcome.nominal.at.base = space_.nominal();
+  outcome.nominal.runs = model_.simulations.nominal;
+  outcome.nominal.mean.resize(n);
+  outcome.nominal.std.resize(n);
+  Eigen::Index next = 0;
+  for (const auto& runs : learnt_) {
+    std::vector<const DesignRun*> nominal;
+    for (const DesignRun& each : runs)
+      if (each.at.effects.empty() && each.at.base == space_.nominal()) nominal.push_back(&each);
+    outcome.nominal.runs = std::min(outcome.nominal.runs, static_cast<int>(nominal.size()));
+    for (Eigen::Index c = 0; c < runs.front().outputs.size(); ++c, ++next) {
+      double sum = 0, square = 0;
+      for (const DesignRun* each : nominal) sum += each->outputs[c];
+      const double count = static_cast<double>(nominal.size()), mean = sum / count;
+      for (const DesignRun* each : nominal) square += (each->outputs[c] - mean) * (each->outputs[c] - mean);
+      outcome.nominal.mean[next] = mean;
+      outcome.nominal.std[next] = std::sqrt(square / std::max(count - 1, 1.0));
+    }
+  }
+  outcome.nominal.gap =
+      simulated_gap(found, model, outcome.nominal.mean, std::max(outcome.nominal.runs, 1), 0);
+  if (calibrated) {
+    calibrated->gap = simulated_gap(found, model, calibrated->mean, calibrated->runs, p);
+    outcome.calibrated = calibrated;
+  }
+  if (found.verdict.kind == DiagnosisVerdict::Kind::effect ||
+      found.verdict.kind == DiagnosisVerdict::Kind::group) {
+    const Judgement& named = found.judgements[found.verdict.named.front()];
+    if (!augmented || moved(augmented->at, named.best)) augmented = simulate(named.best, run, outcome);
+    augmented->gap = simulated_gap(found, model, augmented->mean, augmented->runs, fitted(space_, named));
+    outcome.augmented = augmented;
+    outcome.held_out_calibrated = held_out(space_, found, model, {{}, false, 0});
+    outcome.held_out_augmented = held_out(space_, found, model, named.hypothesis);
+  }
+  if (found.verdict.kind == DiagnosisVerdict::Kind::group) outcome.next = tell_apart(outcome);
+  return outcome;
+}
+
+}  // namespace scree

@@ -1,0 +1,91 @@
+#pragma once
+// The loop of a diagnosis: simulate a design, find, re-calibrate, name, simulate what was named, learn from
+// that, and look again.
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/diagnose/outcome.h"
+#include "cli/ensemble/model_file.h"
+#include "sim/io/results_store.h"
+
+namespace scree {
+
+/// Does runs that are not in the store yet, and returns what the store has of each. Throws Stopped.
+using RunThrough = std::function<std::vector<std::optional<StoredResult>>(const std::vector<RunRequest>&)>;
+
+/// A user has ended the work.
+struct Stopped : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A simulation of every experiment in which the point differs from one without effects.
+struct PlannedRun {
+  ModelPoint at;
+  std::uint64_t seed = 0;
+};
+
+/// The simulations that a diagnosis needs whatever the data: nominal, over the base parameters, and of every
+/// effect. They depend on the model and the effects' names alone, so that all data of the same experiments
+/// share them, and leaving an effect out changes nothing for the others.
+std::vector<PlannedRun> design_of(const ModelSpace& space, const SimulationCounts& counts);
+
+/// The runs of an experiment among these: those whose effects act in it, or that have none. Throws
+/// std::runtime_error if a point is no valid scenario.
+struct ExperimentRuns {
+  std::vector<PlannedRun> runs;
+  std::vector<RunRequest> requests;
+};
+ExperimentRuns runs_of(const DiagnosisModel& model, const ModelSpace& space,
+                       const Dataset::Experiment& experiment, const std::vector<PlannedRun>& planned,
+                       const std::filesystem::path& asset_dir);
+
+/// What such runs gave, by the names of outputs; runs that failed, did not come to rest or miss one of them
+/// are left out.
+struct GatheredRuns {
+  std::vector<DesignRun> runs;
+  int left_out = 0;
+};
+GatheredRuns gather(const ExperimentRuns& planned, const std::vector<std::optional<StoredResult>>& results,
+                    const std::vector<std::string>& outputs);
+
+/// Datasets as one: their experiments and numbers. An experiment whose name stands in two of them gets the
+/// dataset's name before it.
+struct JoinedData {
+  std::vector<Dataset::Experiment> experiments;
+  Measurements measured;
+  std::vector<std::string> notes;
+};
+JoinedData join_datasets(const std::vector<Dataset>& datasets);
+
+class DiagnosisSession {
+ public:
+  DiagnosisSession(const DiagnosisModel& model, JoinedData data, const std::vector<std::string>& without,
+                   std::filesystem::path asset_dir);
+
+  const ModelSpace& space() const { return space_; }
+  const JoinedData& data() const { return data_; }
+  /// Simulations of the design, by experiment.
+  const std::vector<ExperimentRuns>& design() const { return design_; }
+  /// Throws Stopped; std::runtime_error if too few simulations gave the numbers; what `run` throws.
+  DiagnosisOutcome run(const RunThrough& run);
+
+ private:
+  void learn_from(const std::vector<ExperimentRuns>& runs, const RunThrough& run, DiagnosisOutcome& outcome);
+  SimulatedModel simulate(const ModelPoint& point, const RunThrough& run, DiagnosisOutcome& outcome);
+  std::vector<NextMeasurement> tell_apart(const DiagnosisOutcome& outcome) const;
+
+  const DiagnosisModel& model_;
+  JoinedData data_;
+  std::filesystem::path asset_dir_;
+  ModelSpace space_;
+  std::vector<ExperimentRuns> design_;
+  DesignRuns learnt_;
+  // All outputs of the simulations, for what was not measured; by experiment.
+  std::vector<std::vector<std::pair<ModelPoint, std::map<std::string, double>>>> everything_;
+  std::uint64_t checks_ = 0;  // seeds used for them
+};
+
+}  // namespace scree

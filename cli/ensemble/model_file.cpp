@@ -1,0 +1,189 @@
+#include "cli/ensemble/model_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/diagnose/response_surface.h"
+#include "cli/ensemble/output_scope.h"
+#include "sim/effects/effect.h"
+#include "sim/scene/scenario_values.h"
+
+namespace scree {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostParameters = 6;
+
+void read_parameters(const YamlNode& root, DiagnosisModel& model, FileReader& reader) {
+  const YamlNode* map =
+      reader.map_at(root, "parameters", true, "a map from keys to {nominal: .., from: .., to: ..}");
+  if (map == nullptr) return;
+  for (const YamlEntry& entry : map->entries) {
+    const YamlNode& node = entry.value;
+    const bool is_map = node.kind == YamlKind::map;
+    const YamlEntry* nominal = is_map ? node.find("nominal") : nullptr;
+    const YamlEntry* from = is_map ? node.find("from") : nullptr;
+    const YamlEntry* to = is_map ? node.find("to") : nullptr;
+    if (nominal == nullptr || from == nullptr || to == nullptr) {
+      reader.fail(node.place, fmt::format("{}: {{nominal: .., from: .., to: ..}} is expected, found {}",
+                                          entry.key, found(node)));
+      continue;
+    }
+    reader.allow(node, {"nominal", "from", "to"}, " in " + entry.key);
+    const auto n = reader.number(nominal->value, entry.key + ".nominal");
+    const auto a = reader.number(from->value, entry.key + ".from");
+    const auto b = reader.number(to->value, entry.key + ".to");
+    if (!n || !a || !b) continue;
+    if (!(*a < *b)) reader.fail(to->value.place, entry.key + ": 'to' must be above 'from'");
+    if (!(*a <= *n && *n <= *b))
+      reader.fail(nominal->value.place, entry.key + ": 'nominal' must lie between 'from' and 'to'");
+    model.base.push_back({entry.key, *n, *a, *b});
+  }
+  if (map->entries.empty() || map->entries.size() > kMostParameters)
+    reader.fail(map->place, fmt::format("parameters: 1 to {} are allowed", kMostParameters));
+}
+
+void read_effects(const YamlNode& root, DiagnosisModel& model, FileReader& reader) {
+  std::vector<std::string> all;
+  for (const Effect& effect : all_effects()) all.emplace_back(effect.name);
+  if (root.find("effects") == nullptr) {
+    model.effects = all;
+    return;
+  }
+  const YamlNode* list = reader.list_at(root, "effects", true, "a list of names");
+  if (list == nullptr) return;
+  for (const YamlNode& item : list->items) {
+    const std::string name = reader.scalar(item, "effects").value_or("");
+    if (find_effect(name) == nullptr)
+      reader.fail(item.place, fmt::format("effects: no effect {}{}; there are {}", shown(name),
+                                          suggestion(name, all), join(all)));
+    else if (std::find(model.effects.begin(), model.effects.end(), name) != model.effects.end())
+      reader.fail(item.place, fmt::format("effects: {} stands twice", name));
+    else
+      model.effects.push_back(name);
+  }
+}
+
+void read_experiments(const YamlNode& root, const fs::path& file, const fs::path& asset_dir,
+                      DiagnosisModel& model, FileReader& reader) {
+  const YamlNode* map =
+      reader.map_at(root, "experiments", false, "a map from names to {scenario: FILE, observables: [NAME]}");
+  if (map == nullptr) return;
+  for (const YamlEntry& entry : map->entries) {
+    auto experiment =
+        read_experiment(entry, file, asset_dir, {"scenario", "set", "observables", "errors"}, reader);
+    if (!experiment) continue;
+    ModelExperiment here{std::move(*experiment), {}, {}};
+    if (const YamlNode* list =
+            reader.list_at(entry.value, "observables", true, "a list of numbers that a run gives"))
+      for (const YamlNode& item : list->items) {
+        const std::string output = reader.scalar(item, "observables").value_or("");
+        if (const std::string why = why_not_given(here.experiment.scenario, output); !why.empty())
+          reader.fail(item.place, fmt::format("observables: {}: {}", shown(output), why));
+        else
+          here.observables.push_back(output);
+      }
+    if (const YamlNode* errors =
+            reader.map_at(entry.value, "errors", false, "a map from observables to numbers"))
+      for (const YamlEntry& each : errors->entries) {
+        const double error = reader.number(each.value, "errors." + each.key).value_or(1);
+        if (std::find(here.observables.begin(), here.observables.end(), each.key) == here.observables.end())
+          reader.fail(each.key_place, fmt::format("errors: {} is none of the observables", shown(each.key)));
+        if (!(error > 0)) reader.fail(each.value.place, "errors: must be above 0 (a standard deviation)");
+        here.errors[each.key] = error;
+      }
+    model.experiments.push_back(std::move(here));
+  }
+}
+
+// What would be refused only in the middle of a design: both ends of every parameter, in every experiment.
+void check_ends(const DiagnosisModel& model, const fs::path& asset_dir, const Place& place,
+                FileReader& reader) {
+  for (const ModelExperiment& each : model.experiments)
+    for (const double end : {-1.0, 1.0}) {
+      const ModelPoint point{Eigen::VectorXd::Constant(static_cast<Eigen::Index>(model.base.size()), end),
+                             {}};
+      const ScenarioResult loaded = load_scenario(
+          each.experiment.file, overrides_at(model, {model.base, {}}, each.experiment, point), asset_dir);
+      for (const ScenarioError& error : loaded.errors)
+        reader.fail(place, fmt::format("experiment {}: {}", each.experiment.name, error.text()));
+      if (!loaded.errors.empty()) return;
+    }
+}
+
+}  // namespace
+
+DiagnosisModelResult load_model(const fs::path& file, const fs::path& asset_dir) {
+  DiagnosisModelResult result;
+  DiagnosisModel& model = result.model;
+  FileReader reader(result.errors);
+  model.name = file.stem().string();
+  const auto root = read_yaml(file, result.errors);
+  if (!root) return result;
+  reader.allow(*root, {"title", "parameters", "ties", "set", "effects", "simulations", "experiments"}, "");
+  if (const YamlEntry* title = root->find("title"))
+    model.title = reader.scalar(title->value, "title").value_or("");
+  if (model.title.empty()) model.title = model.name;
+  read_parameters(*root, model, reader);
+  std::vector<std::string> names;
+  for (const BaseAxis& axis : model.base) names.push_back(axis.key);
+  model.variation = read_variation(*root, names, reader);
+  read_effects(*root, model, reader);
+  if (const YamlNode* counts = reader.map_at(*root, "simulations", false, "a map of numbers")) {
+    SimulationCounts& n = model.simulations;
+    reader.allow(*counts, {"nominal", "base", "effect", "check"}, " in simulations");
+    reader.integer(*counts, "nominal", 2, 1000, n.nominal);
+    reader.integer(*counts, "base", ResponseSurface::least_base_runs(model.base.size()), 1000, n.base);
+    reader.integer(*counts, "effect", 4, 1000, n.effect);
+    reader.integer(*counts, "check", 2, 1000, n.check);
+  }
+  model.simulations.base =
+      std::max(model.simulations.base, ResponseSurface::least_base_runs(model.base.size()));
+  read_experiments(*root, file, asset_dir, model, reader);
+  if (reader.good()) check_ends(model, asset_dir, root->place, reader);
+  return result;
+}
+
+ModelSpace space_of(const DiagnosisModel& model, const std::vector<Dataset::Experiment>& experiments,
+                    const std::vector<std::string>& without) {
+  ModelSpace space{model.base, {}};
+  for (const std::string& name : model.effects) {
+    if (std::find(without.begin(), without.end(), name) != without.end()) continue;
+    const Effect& effect = *find_effect(name);
+    CandidateEffect candidate{name, std::string(effect.title), effect.absent, {}, {}};
+    for (const EffectParameter& p : effect.parameters)
+      if (candidate.axes.empty() || p.prior_low < p.prior_high)
+        candidate.axes.push_back(
+            {fmt::format("effects.{}.{}", name, p.key), std::string(p.unit), p.prior_low, p.prior_high});
+    for (const Dataset::Experiment& experiment : experiments) {
+      const auto& types = effect.experiments;
+      if (types.empty() ||
+          std::find(types.begin(), types.end(), experiment_type(experiment.scenario)) != types.end())
+        candidate.acts.push_back(experiment.name);
+    }
+    if (!candidate.acts.empty()) space.effects.push_back(std::move(candidate));
+  }
+  return space;
+}
+
+std::vector<std::string> overrides_at(const DiagnosisModel& model, const ModelSpace& space,
+                                      const Dataset::Experiment& experiment, const ModelPoint& point) {
+  std::vector<std::string> overrides = experiment.overrides, names, values;
+  for (std::size_t k = 0; k < model.base.size(); ++k) {
+    names.push_back(model.base[k].key);
+    values.push_back(fmt::format("{:.6g}", model.base[k].value(point.base[static_cast<Eigen::Index>(k)])));
+  }
+  for (std::string& each : overrides_of(model.variation, names, values)) overrides.push_back(std::move(each));
+  for (const EffectAt& there : point.effects) {
+    const CandidateEffect& effect = space.effects[there.effect];
+    if (!effect.acts_in(experiment.name)) continue;
+    for (std::size_t k = 0; k < effect.axes.size(); ++k)
+      overrides.push_back(fmt::format("{}={:.6g}", effect.axes[k].key,
+                                      effect.value(k, there.at[static_cast<Eigen::Index>(k)])));
+  }
+  return overrides;
+}
+
+}  // namespace scree

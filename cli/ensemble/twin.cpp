@@ -1,0 +1,192 @@
+#include "cli/ensemble/twin.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "sim/material/random.h"
+
+namespace scree {
+namespace {
+
+constexpr double kInnerBase = 0.6, kInnerOther = 0.8;  // of the ranges, from which a truth is drawn
+constexpr int kSteps = 60;                             // along an amplitude's range
+constexpr std::uint64_t kTwinSeeds = 1'000'000, kSeedsOfOneTwin = 1000;
+
+std::vector<Dataset::Experiment> experiments_of(const DiagnosisModel& model) {
+  std::vector<Dataset::Experiment> all;
+  for (const ModelExperiment& each : model.experiments) all.push_back(each.experiment);
+  return all;
+}
+
+double normal(Random& random) {
+  return std::sqrt(-2 * std::log(1 - random.uniform())) * std::cos(2 * std::numbers::pi * random.uniform());
+}
+
+// The runs of all experiments; their results by experiment.
+std::vector<std::vector<std::optional<StoredResult>>> done(const std::vector<ExperimentRuns>& runs,
+                                                           const RunThrough& run) {
+  std::vector<RunRequest> all;
+  for (const ExperimentRuns& each : runs) all.insert(all.end(), each.requests.begin(), each.requests.end());
+  const auto results = run(all);
+  std::vector<std::vector<std::optional<StoredResult>>> split;
+  std::size_t next = 0;
+  for (const ExperimentRuns& each : runs) {
+    split.emplace_back(results.begin() + static_cast<std::ptrdiff_t>(next),
+                       results.begin() + static_cast<std::ptrdiff_t>(next + each.requests.size()));
+    next += each.requests.size();
+  }
+  return split;
+}
+
+}  // namespace
+
+Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::filesystem::path& asset_dir,
+               const RunThrough& design, const RunThrough& hidden) {
+  if (model.experiments.empty())
+    throw std::runtime_error(model.name + ": a twin needs the model's experiments and their observables");
+  const std::vector<Dataset::Experiment> experiments = experiments_of(model);
+  const ModelSpace space = space_of(model, experiments, {});
+  std::vector<std::string> names;
+  std::vector<ExperimentRuns> planned;
+  for (const Dataset::Experiment& each : experiments) {
+    names.push_back(each.name);
+    planned.push_back(runs_of(model, space, each, design_of(space, model.simulations), asset_dir));
+  }
+  DesignRuns learnt;
+  const auto results = done(planned, design);
+  for (std::size_t e = 0; e < planned.size(); ++e)
+    learnt.push_back(gather(planned[e], results[e], model.experiments[e].observables).runs);
+  const LearntModel surface(space, names, learnt);
+
+  // Covariance of the means that will be measured.
+  Eigen::Index n = 0, first = 0;
+  for (const ModelExperiment& each : model.experiments)
+    n += static_cast<Eigen::Index>(each.observables.size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
+  std::vector<Eigen::VectorXd> errors;  // variances, by experiment
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    Eigen::MatrixXd block = surface.surfaces()[e]->scatter();
+    errors.push_back(spec.noise * spec.noise * block.diagonal());
+    for (const auto& [name, error] : model.experiments[e].errors) {
+      const auto& all = model.experiments[e].observables;
+      errors.back()[std::find(all.begin(), all.end(), name) - all.begin()] = error * error;
+    }
+    block.diagonal() += errors.back();
+    covariance.block(first, first, block.rows(), block.rows()) = block / spec.repeats;
+    first += block.rows();
+  }
+
+  Twin twin;
+  Random random(spec.seed, 0, RandomPurpose::measurement);
+  twin.truth.at.base.resize(static_cast<Eigen::Index>(space.base.size()));
+  for (double& x : twin.truth.at.base) x = kInnerBase * random.uniform(-1, 1);
+  for (const std::string& name : spec.effects) {
+    const std::size_t e = space.find(name);
+    if (e == space.effects.size())
+      throw std::runtime_error(fmt::format("effect {} acts in none of the model's experiments", name));
+    const CandidateEffect& effect = space.effects[e];
+    EffectAt there{e, Eigen::VectorXd(static_cast<Eigen::Index>(effect.axes.size()))};
+    const double ends[] = {effect.lowest(), effect.highest()};
+    double sign = random.uniform() < 0.5 ? -1 : 1;
+    if (ends[0] >= 0) sign = 1;
+    if (ends[1] <= 0) sign = -1;
+    for (Eigen::Index k = 1; k < there.at.size(); ++k) there.at[k] = kInnerOther * random.uniform(-1, 1);
+    const auto strength = [&](double amplitude) {
+      there.at[0] = amplitude;
+      return detectability(space, surface, covariance, {twin.truth.at.base, {there}});
+    };
+    // The first crossing from 0; the other direction if this one is too weak.
+    double found = 0, strongest = 0;
+    for (int way = 0; way < 2 && found == 0; ++way, sign = -sign) {
+      const double end = sign < 0 ? ends[0] : ends[1];
+      if (end * sign <= 0) continue;
+      for (int k = 1; k <= kSteps && found == 0; ++k) {
+        const double here = end * k / kSteps;
+        strongest = std::max(strongest, strength(here));
+        if (strongest < spec.strength) continue;
+        double low = end * (k - 1) / kSteps, high = here;
+        for (int b = 0; b < 40; ++b) {
+          const double middle = 0.5 * (low + high);
+          (strength(middle) < spec.strength ? low : high) = middle;
+        }
+        found = high;
+      }
+    }
+    if (found == 0)
+      throw TooWeak(
+          fmt::format("{} shifts these observables by {:.2g} standard uncertainties at most within its prior "
+                      "range, not by "
+                      "{:g}; more --repeats, or less --noise, make it stronger",
+                      name, strongest, spec.strength));
+    twin.truth.detectability.push_back(strength(found));
+    twin.truth.at.effects.push_back(there);
+  }
+  std::sort(twin.truth.at.effects.begin(), twin.truth.at.effects.end(),
+            [](const auto& a, const auto& b) { return a.effect < b.effect; });
+
+  std::vector<PlannedRun> truth;
+  for (int k = 0; k < spec.repeats; ++k)
+    truth.push_back(
+        {twin.truth.at, kTwinSeeds + spec.seed * kSeedsOfOneTwin + static_cast<std::uint64_t>(k)});
+  std::vector<ExperimentRuns> runs;
+  for (const Dataset::Experiment& each : experiments) {
+    std::vector<PlannedRun> plain = truth;
+    const bool acts =
+        std::any_of(truth.front().at.effects.begin(), truth.front().at.effects.end(),
+                    [&](const EffectAt& e) { return space.effects[e.effect].acts_in(each.name); });
+    if (!acts)
+      for (PlannedRun& run : plain) run.at.effects.clear();
+    Dataset::Experiment made = each;
+    if (!spec.engine.empty()) made.overrides.push_back("engine=" + spec.engine);
+    runs.push_back(runs_of(model, space, made, plain, asset_dir));
+  }
+  const auto measured = done(runs, hidden);
+  twin.data.title = fmt::format("Measurements {}", spec.seed);
+  twin.data.source = "scree twin " + model.name;
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    const std::vector<std::string>& outputs = model.experiments[e].observables;
+    const GatheredRuns gathered = gather(runs[e], measured[e], outputs);
+    if (gathered.left_out > 0)
+      throw std::runtime_error(fmt::format("{}: {} of {} simulations of the truth gave no measurement",
+                                           names[e], gathered.left_out, spec.repeats));
+    DatasetDraft::Experiment draft{names[e], experiments[e].file, experiments[e].overrides, {}};
+    for (std::size_t c = 0; c < outputs.size(); ++c) {
+      const auto column = static_cast<Eigen::Index>(c);
+      std::vector<double> values;
+      for (const DesignRun& run : gathered.runs)
+        values.push_back(run.outputs[column] + std::sqrt(errors[e][column]) * normal(random));
+      draft.observables[outputs[c]] = mean_std(values);
+    }
+    twin.data.experiments.push_back(std::move(draft));
+  }
+  return twin;
+}
+
+std::string twin_answer(const DiagnosisModel& model, const TwinSpec& spec, const TwinTruth& truth) {
+  const ModelSpace space = space_of(model, experiments_of(model), {});
+  nlohmann::ordered_json answer;
+  answer["seed"] = spec.seed;
+  answer["repeats"] = spec.repeats;
+  answer["noise"] = spec.noise;
+  answer["strength"] = spec.strength;
+  if (!spec.engine.empty()) answer["engine"] = spec.engine;
+  answer["effects"] = nlohmann::ordered_json::array();
+  for (const EffectAt& there : truth.at.effects) {
+    const CandidateEffect& effect = space.effects[there.effect];
+    nlohmann::ordered_json values;
+    for (std::size_t k = 0; k < effect.axes.size(); ++k)
+      values[effect.axes[k].key] = effect.value(k, there.at[static_cast<Eigen::Index>(k)]);
+    answer["effects"].push_back({{"name", effect.name}, {"values", values}});
+  }
+  answer["detectability"] = truth.detectability;
+  for (std::size_t k = 0; k < space.base.size(); ++k)
+    answer["parameters"][space.base[k].key] =
+        space.base[k].value(truth.at.base[static_cast<Eigen::Index>(k)]);
+  return answer.dump(2) + "\n";
+}
+
+}  // namespace scree

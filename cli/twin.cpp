@@ -1,0 +1,108 @@
+// scree twin: data with a hidden effect, and the sealed answer.
+#include "cli/ensemble/twin.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <map>
+
+#include "cli/commands.h"
+#include "cli/ensemble_console.h"
+#include "cli/output_folder.h"
+#include "cli/run_through.h"
+#include "sim/io/text_file.h"
+#include "sim/material/random.h"
+#include "sim/scene/scenario_values.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::map<std::string, double> kStrengths{{"weak", 2}, {"medium", 4}, {"strong", 8}};
+
+// Sets what is left to chance; false, with a message, if a word is none.
+bool draw(const TwinOptions& options, const scree::DiagnosisModel& model, scree::TwinSpec& spec) {
+  scree::Random random(spec.seed, 1, scree::RandomPurpose::measurement);
+  std::vector<std::string> asked = options.effects;
+  if (asked.empty()) asked.push_back("random");
+  for (const std::string& name : asked) {
+    if (name == "none") continue;
+    if (name == "random") {
+      // Of all effects and none.
+      const auto pick =
+          static_cast<std::size_t>(random.uniform() * static_cast<double>(model.effects.size() + 1));
+      if (pick < model.effects.size()) spec.effects.push_back(model.effects[pick]);
+      continue;
+    }
+    if (std::find(model.effects.begin(), model.effects.end(), name) == model.effects.end()) {
+      fmt::print(stderr, "--effect {}: none of the model's{}; there are none, random, {}\n", name,
+                 scree::suggestion(name, model.effects), scree::join(model.effects));
+      return false;
+    }
+    if (std::find(spec.effects.begin(), spec.effects.end(), name) == spec.effects.end())
+      spec.effects.push_back(name);
+  }
+  if (options.strength == "random") {
+    const double pick = random.uniform();
+    spec.strength = pick < 1.0 / 3 ? 2 : pick < 2.0 / 3 ? 4 : 8;
+  } else if (const auto known = kStrengths.find(options.strength); known != kStrengths.end()) {
+    spec.strength = known->second;
+  } else if (const auto number = number_of(options.strength); number && *number > 0) {
+    spec.strength = *number;
+  } else {
+    fmt::print(stderr, "--strength {}: weak, medium, strong, random, or a number above 0\n",
+               options.strength);
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+int run_twin(const TwinOptions& options) {
+  scree::DiagnosisModelResult loaded = scree::load_model(options.model, asset_dir());
+  for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
+  if (!loaded.errors.empty()) return kBadInput;
+  const scree::DiagnosisModel& model = loaded.model;
+  if (model.experiments.empty()) {
+    fmt::print(stderr, "{}: a twin needs `experiments` with their observables\n", options.model.string());
+    return kBadInput;
+  }
+  scree::TwinSpec spec;
+  spec.repeats = options.repeats;
+  spec.noise = options.noise;
+  spec.engine = options.engine;
+  spec.seed = options.seed
+                  ? *options.seed
+                  : static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count() /
+                                               1000 % 1000000000);
+  if (!draw(options, model, spec)) return kBadInput;
+  if (options.engine == "impulse" && !spec.effects.empty()) {
+    fmt::print(stderr, "--engine impulse: has no effects; take --effect none\n");
+    return kBadInput;
+  }
+  const fs::path out = options.out.empty() ? free_run_folder("twin") : options.out;
+  const fs::path answer = options.answer.empty() ? fs::path(out.string() + ".answer.json") : options.answer;
+  if (!prepare_folder(out, options.force)) return kBadInput;
+  const auto store = open_store(options.store, false);
+  // What made the truth is not where diagnose looks.
+  const fs::path hidden_file = answer.string() + ".runs.sqlite";
+  const auto hidden = open_store(hidden_file, false);
+  if (!store || !hidden) return kBadInput;
+  try {
+    const scree::Twin twin =
+        scree::make_twin(model, spec, asset_dir(), run_through(*store, options.jobs, false),
+                         run_through(*hidden, options.jobs, false));
+    const std::vector<std::string> left_out = scree::write_dataset(twin.data, out);
+    if (!left_out.empty()) fmt::print("note: without scatter, left out: {}\n", fmt::join(left_out, ", "));
+    scree::write_text_file(answer, scree::twin_answer(model, spec, twin.truth));
+  } catch (const scree::TooWeak& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return kBadInput;
+  } catch (const scree::Stopped& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return kInterrupted;
+  }
+  fmt::print("dataset: {}\nsealed answer: {}\n", (out / "dataset.yaml").string(), answer.string());
+  return kOk;
+}
