@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -23,28 +23,36 @@ constexpr double kLogUnknownLow = 0,
 constexpr std::uint64_t kSeed = 20177;  // of the integrals
 constexpr double kStep = 0.05;          // of a numerical derivative by a coordinate
 
-double p_of(double chi2, int freedom) {
+// `scatter_freedom`: of the covariance; infinite if it is known.
+double p_of(double chi2, int freedom, double scatter_freedom) {
   if (freedom < 1 || !(chi2 > 0)) return 1;
-  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), chi2));
+  if (std::isinf(scatter_freedom))
+    return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), chi2));
+  return boost::math::cdf(
+      boost::math::complement(boost::math::fisher_f(freedom, scatter_freedom), chi2 / freedom));
 }
 
-Gap gap_of(double chi2, int numbers, int fitted) {
+Gap gap_of(double chi2, int numbers, int fitted, double scatter_freedom) {
   const int freedom = std::max(numbers - fitted, 1);
-  return {chi2, freedom, p_of(chi2, freedom)};
+  return {chi2, freedom, p_of(chi2, freedom, scatter_freedom)};
 }
 
-// Chi-square and logarithm of the normal density, in units of `scale`.
-struct Normal {
+// Chi-square and logarithm of the density, Student's t of several dimensions or normal.
+struct Density {
   double chi2, log_density;
 };
-Normal normal(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance,
-              const Eigen::VectorXd& scale) {
+Density density(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance,
+                const Eigen::VectorXd& scale, double scatter_freedom) {
   const Eigen::VectorXd d = difference.cwiseQuotient(scale);
   const Eigen::MatrixXd c =
       scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal();
   const Eigen::LLT<Eigen::MatrixXd> factor(c);
   const double chi2 = factor.matrixL().solve(d).squaredNorm();
-  return {chi2, -0.5 * chi2 - factor.matrixLLT().diagonal().array().log().sum()};
+  const double n = static_cast<double>(difference.size());
+  const double log_shape = std::isinf(scatter_freedom)
+                               ? -0.5 * chi2
+                               : -0.5 * (scatter_freedom + n) * std::log1p(chi2 / scatter_freedom);
+  return {chi2, log_shape - factor.matrixLLT().diagonal().array().log().sum()};
 }
 
 std::vector<Eigen::Index> everything(Eigen::Index n) {
@@ -57,8 +65,8 @@ std::vector<Eigen::Index> everything(Eigen::Index n) {
 class Likelihood {
  public:
   Likelihood(const ModelSpace& space, const LearntModel& model, const Measurements& measured,
-             const Eigen::MatrixXd& covariance, std::vector<Eigen::Index> which)
-      : space_(space), model_(model), which_(std::move(which)) {
+             const Eigen::MatrixXd& covariance, double freedom, std::vector<Eigen::Index> which)
+      : space_(space), model_(model), which_(std::move(which)), freedom_(freedom) {
     value_ = measured.vector()(which_);
     covariance_ = covariance(which_, which_);
     scale_ = covariance_.diagonal().cwiseSqrt();
@@ -87,21 +95,23 @@ class Likelihood {
     }
     return point;
   }
-  Normal at(const Hypothesis& h, const Eigen::VectorXd& x) const {
+  Density at(const Hypothesis& h, const Eigen::VectorXd& x) const {
     const SurfacePrediction all = model_.at(point(h, x));
     Eigen::MatrixXd covariance = covariance_ + all.covariance(which_, which_);
     if (h.unknown) covariance.diagonal() += std::exp(x[x.size() - 1]) * covariance_.diagonal();
-    return normal(value_ - all.mean(which_), covariance, scale_);
+    return density(value_ - all.mean(which_), covariance, scale_, freedom_);
   }
   Evidence evidence(const Hypothesis& h) const {
     return integrate([&](const Eigen::VectorXd& x) { return at(h, x).log_density; }, box(h), kSeed);
   }
   int numbers() const { return static_cast<int>(which_.size()); }
+  double freedom() const { return freedom_; }
 
  private:
   const ModelSpace& space_;
   const LearntModel& model_;
   std::vector<Eigen::Index> which_;
+  double freedom_;
   Eigen::VectorXd value_, scale_;
   Eigen::MatrixXd covariance_;
 };
@@ -114,7 +124,8 @@ Judgement judge(const ModelSpace& space, const Likelihood& likelihood, const Hyp
   const int fitted = static_cast<int>(j.evidence.most_likely.size()) - (hypothesis.unknown ? 1 : 0);
   Hypothesis known = hypothesis;
   known.unknown = false;
-  j.gap = gap_of(likelihood.at(known, j.evidence.most_likely).chi2, likelihood.numbers(), fitted);
+  j.gap = gap_of(likelihood.at(known, j.evidence.most_likely).chi2, likelihood.numbers(), fitted,
+                 likelihood.freedom());
   Eigen::Index next = 0;
   const auto interval = [&](auto&& value) {
     Judgement::Interval i{value(j.evidence.quantile(next, 0.05)), value(j.evidence.quantile(next, 0.5)),
@@ -167,22 +178,23 @@ void find(const ModelSpace& space, const LearntModel& model, Diagnosis& d) {
   const Eigen::MatrixXd covariance = d.covariance + here.covariance;
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
   const auto n = static_cast<int>(difference.size());
-  d.nominal = gap_of(normal(difference, covariance, scale).chi2, n, 0);
+  d.nominal = gap_of(density(difference, covariance, scale, d.freedom).chi2, n, 0, d.freedom);
   std::map<std::string, std::vector<Eigen::Index>> parts;
   for (int k = 0; k < n; ++k) {
     const MeasuredValue& value = d.measured.values[static_cast<std::size_t>(k)];
     const double z = difference[k] / scale[k];
-    d.numbers.push_back({value.label, difference[k], z, gap_of(z * z, 1, 0), false});
+    d.numbers.push_back({value.label, difference[k], z, gap_of(z * z, 1, 0, d.freedom), false});
     parts["experiment " + d.measured.experiments[value.experiment]].push_back(k);
     if (const std::string section = section_of_output(value.output); !section.empty())
       parts["section " + section].push_back(k);
     parts["quantity " + quantity_of_output(value.output)].push_back(k);
   }
   for (const auto& [name, which] : parts)
-    d.parts.push_back({name, nan, nan,
-                       gap_of(normal(difference(which), covariance(which, which), scale(which)).chi2,
-                              static_cast<int>(which.size()), 0),
-                       false});
+    d.parts.push_back(
+        {name, nan, nan,
+         gap_of(density(difference(which), covariance(which, which), scale(which), d.freedom).chi2,
+                static_cast<int>(which.size()), 0, d.freedom),
+         false});
   const auto mark = [](std::vector<Disagreement>& all) {
     std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.gap.p < b.gap.p; });
     double harmonic = 0;
@@ -260,8 +272,10 @@ std::vector<const ResponseSurface*> LearntModel::surfaces() const {
 Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model) {
   Diagnosis d;
   d.measured = measured;
-  d.covariance = working_covariance(measured, model.surfaces());
-  const Likelihood likelihood(space, model, measured, d.covariance,
+  const WorkingCovariance working = working_covariance(measured, model.surfaces());
+  d.covariance = working.matrix;
+  d.freedom = working.freedom;
+  const Likelihood likelihood(space, model, measured, d.covariance, d.freedom,
                               everything(static_cast<Eigen::Index>(measured.values.size())));
   find(space, model, d);
   d.calibration = judge(space, likelihood, {{}, false, kPriorCalibration});
@@ -340,7 +354,7 @@ HeldOut held_out(const ModelSpace& space, const Diagnosis& d, const LearntModel&
     for (Eigen::Index k = 0; k < n; ++k)
       if (std::find(which.begin(), which.end(), k) == which.end()) rest.push_back(k);
     if (rest.empty()) continue;
-    const Likelihood likelihood(space, model, d.measured, d.covariance, rest);
+    const Likelihood likelihood(space, model, d.measured, d.covariance, d.freedom, rest);
     const Evidence evidence = likelihood.evidence(hypothesis);
     // Mean and covariance over the posterior of the rest.
     const auto m = static_cast<Eigen::Index>(which.size());
@@ -357,9 +371,9 @@ HeldOut held_out(const ModelSpace& space, const Diagnosis& d, const LearntModel&
     }
     const Eigen::MatrixXd covariance = d.covariance(which, which) + within + square - mean * mean.transpose();
     const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
-    const double chi2 = normal(values(which) - mean, covariance, scale).chi2;
+    const double chi2 = density(values(which) - mean, covariance, scale, d.freedom).chi2;
     result.parts.push_back(name);
-    result.gaps.push_back(gap_of(chi2, static_cast<int>(m), 0));
+    result.gaps.push_back(gap_of(chi2, static_cast<int>(m), 0, d.freedom));
     result.chi2 += chi2;
     result.count += static_cast<int>(m);
   }
@@ -376,8 +390,8 @@ Gap simulated_gap(const Diagnosis& d, const LearntModel& model, const Eigen::Vec
     first += n;
   }
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
-  return gap_of(normal(d.measured.vector() - mean, covariance, scale).chi2, static_cast<int>(mean.size()),
-                fitted);
+  return gap_of(density(d.measured.vector() - mean, covariance, scale, d.freedom).chi2,
+                static_cast<int>(mean.size()), fitted, d.freedom);
 }
 
 double detectability(const ModelSpace& space, const LearntModel& model, const Eigen::MatrixXd& covariance,

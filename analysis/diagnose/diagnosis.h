@@ -23,7 +23,7 @@ inline constexpr double kFalseDiscoveries = 0.1;  ///< expected share of false a
 struct Gap {
   double chi2 = 0;
   int freedom = 0;  ///< numbers less what was fitted
-  double p = 1;     ///< probability of as much by chance
+  double p = 1;     ///< probability of as much by chance (Fisher's F)
 };
 
 /// Where the nominal model disagrees: one number, or several together.
@@ -85,6 +85,7 @@ struct DiagnosisVerdict {
 struct Diagnosis {
   Measurements measured;
   Eigen::MatrixXd covariance;  ///< of the measured values, as used
+  double freedom = 0;          ///< degrees of freedom of that, see WorkingCovariance
   Gap nominal;
   std::vector<Disagreement> numbers;  ///< by falling |z|
   std::vector<Disagreement> parts;    ///< experiments, sections, quantities

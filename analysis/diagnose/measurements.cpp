@@ -2,18 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <regex>
 
 namespace scree {
 namespace {
 
 constexpr double kPriorRepeats = 10;  // what the simulation's scatter counts, in repeats
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
-}
 
 bool scatter_is_stated(const Measurements& measured, Eigen::Index k) {
   const MeasuredValue& value = measured.values[static_cast<std::size_t>(k)];
@@ -44,25 +39,27 @@ std::vector<Eigen::Index> Measurements::of(std::size_t experiment) const {
   return which;
 }
 
-Eigen::MatrixXd working_covariance(const Measurements& measured,
-                                   const std::vector<const ResponseSurface*>& surfaces) {
+WorkingCovariance working_covariance(const Measurements& measured,
+                                     const std::vector<const ResponseSurface*>& surfaces) {
   Eigen::MatrixXd covariance = measured.covariance;
+  double freedom = 0;
   for (std::size_t e = 0; e < measured.experiments.size(); ++e) {
     const std::vector<Eigen::Index> all = measured.of(e);
     const Eigen::MatrixXd& seeds = surfaces[e]->scatter();
     std::vector<std::size_t> free;  // columns of the experiment
-    std::vector<double> ratios, expected;
+    double weighted = 0, weight = 0;
     for (std::size_t c = 0; c < all.size(); ++c) {
       const auto k = static_cast<Eigen::Index>(c);
       if (!scatter_is_stated(measured, all[c]) || !(seeds(k, k) > 0)) continue;
       const MeasuredValue& value = measured.values[static_cast<std::size_t>(all[c])];
       free.push_back(c);
-      ratios.push_back(*value.std * *value.std / seeds(k, k));
       const double nu = *value.repeats - 1;
-      expected.push_back(std::pow(1 - 2 / (9 * nu), 3));  // median of chi-square over its freedom
+      weighted += nu * *value.std * *value.std / seeds(k, k);
+      weight += nu;
     }
     if (free.empty()) continue;
-    const double ratio = median(ratios) / median(expected);
+    const double ratio = weighted / weight;
+    freedom += weight;
     for (const std::size_t a : free)
       for (const std::size_t b : free) {
         const MeasuredValue& first = measured.values[static_cast<std::size_t>(all[a])];
@@ -80,7 +77,7 @@ Eigen::MatrixXd working_covariance(const Measurements& measured,
         covariance(all[a], all[a]) = std::max(variance, 1.02 * of_seeds * std::min(ratio, 1.0)) / n + beyond;
       }
   }
-  return covariance;
+  return {covariance, freedom > 0 ? freedom : std::numeric_limits<double>::infinity()};
 }
 
 std::string section_of_output(const std::string& output) {

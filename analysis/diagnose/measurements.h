@@ -35,12 +35,19 @@ struct Measurements {
 /// of one test are correlated, while most tables state neither.
 ///
 /// For a value with the deviation s of n repeats whose correlations are not stated, the variance between
-/// repeats is (m k S + (n - 1) s^2) / (m + n - 1) with S that between seeds of the simulation, k the median
+/// repeats is (m k S + (n - 1) s^2) / (m + n - 1) with S that between seeds of the simulation, k the mean
 /// over the experiment of s^2 / S, and m = 10; the covariance of two such values is S's times min(k, 1); both
 /// over n. What the stated uncertainty holds beyond s / sqrt(n) is added to the diagonal. Values without a
 /// deviation, and stated covariances, stay as they are.
-Eigen::MatrixXd working_covariance(const Measurements& measured,
-                                   const std::vector<const ResponseSurface*>& surfaces);
+///
+/// `freedom`: degrees of freedom of the scatter, the sum of n - 1 over such values; infinite without any.
+/// Squares over this covariance follow Fisher's F, not chi-square: common scales are as uncertain as that.
+struct WorkingCovariance {
+  Eigen::MatrixXd matrix;
+  double freedom = 0;
+};
+WorkingCovariance working_covariance(const Measurements& measured,
+                                     const std::vector<const ResponseSurface*>& surfaces);
 
 /// Section of an output, the end of its name (S1, top, ring2); empty if it is of the whole.
 std::string section_of_output(const std::string& output);

@@ -1,0 +1,166 @@
+#include "analysis/diagnose/diagnosis.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/diagnose/synthetic.h"
+
+namespace scree {
+namespace {
+
+using Kind = DiagnosisVerdict::Kind;
+
+class DiagnosisOf : public testing::Test {
+ protected:
+  SyntheticWorld world;
+  LearntModel model{world.space, world.experiments, world.design(1)};
+
+  Diagnosis of(const ModelPoint& truth, std::uint64_t seed) const {
+    return diagnose(world.space, world.measure(truth, 5, seed), model);
+  }
+  static std::vector<std::size_t> named(const Diagnosis& d) {
+    if (d.verdict.named.empty()) return {};
+    return d.judgements[d.verdict.named.front()].hypothesis.effects;
+  }
+};
+
+TEST_F(DiagnosisOf, NominalDataSaysThatNothingIsMissing) {
+  int alarms = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Diagnosis d = of({world.space.nominal(), {}}, seed);
+    alarms += d.verdict.kind == Kind::nothing || d.verdict.kind == Kind::calibration ? 0 : 1;
+  }
+  EXPECT_LE(alarms, 2) << "of 40";
+}
+
+TEST_F(DiagnosisOf, OtherParametersAreCalibratedAndNothingIsNamed) {
+  int wrong = 0, inside = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Diagnosis d = of(SyntheticWorld::point(0.5, -0.6), seed);
+    wrong += d.verdict.kind == Kind::calibration ? 0 : 1;
+    const Judgement::Interval a = d.calibration.base[0];
+    inside += a.low <= 0.25 && 0.25 <= a.high ? 1 : 0;
+  }
+  EXPECT_LE(wrong, 2) << "of 40";
+  EXPECT_GE(inside, 31) << "of 40: 90 % intervals";
+}
+
+TEST_F(DiagnosisOf, HiddenEffectsAreNamedWithTheirAmplitude) {
+  int right = 0, inside = 0, count = 0;
+  for (std::size_t e = 0; e < SyntheticWorld::kEffects; ++e)
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      const double x = e == 3 && seed % 2 == 0 ? -0.45 : 0.45;
+      const Diagnosis d = of(SyntheticWorld::point(-0.4, 0.3, {{e, x}}), seed);
+      ++count;
+      if (named(d) != std::vector<std::size_t>{e}) continue;
+      ++right;
+      const Judgement::Interval i = d.judgements[d.verdict.named.front()].effects[0][0];
+      inside += i.low <= x && x <= i.high ? 1 : 0;
+    }
+  EXPECT_GE(right, 30) << "of " << count;
+  EXPECT_GE(inside, right * 8 / 10) << "of " << right << ": 90 % intervals";
+}
+
+TEST_F(DiagnosisOf, TwoHiddenEffectsAreBothNamed) {
+  int right = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed)
+    right += named(of(SyntheticWorld::point(0.2, 0.2, {{0, 0.5}, {3, -0.5}}), seed)) ==
+                     std::vector<std::size_t>{0, 3}
+                 ? 1
+                 : 0;
+  EXPECT_GE(right, 7) << "of 8";
+}
+
+TEST_F(DiagnosisOf, AnEffectThatIsNotInTheLibraryIsUnknown) {
+  SyntheticWorld smaller;
+  smaller.space.effects.erase(smaller.space.effects.begin());
+  DesignRuns runs = world.design(1);
+  for (auto& experiment : runs) {
+    std::erase_if(experiment, [](const DesignRun& run) {
+      return !run.at.effects.empty() && run.at.effects[0].effect == 0;
+    });
+    for (DesignRun& run : experiment)
+      for (EffectAt& effect : run.at.effects) --effect.effect;
+  }
+  const LearntModel without(smaller.space, smaller.experiments, runs);
+  int unknown = 0, sure = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Diagnosis d =
+        diagnose(smaller.space, world.measure(SyntheticWorld::point(0, 0.3, {{0, 0.6}}), 5, seed), without);
+    unknown += d.verdict.kind == Kind::unknown ? 1 : 0;
+    sure += d.verdict.kind == Kind::effect ? 1 : 0;
+  }
+  EXPECT_GE(unknown, 9) << "of 10";
+  EXPECT_LE(sure, 1) << "of 10";
+}
+
+TEST_F(DiagnosisOf, WhatWasHeldOutIsForetoldByTheRightEffectOnly) {
+  const Diagnosis d = of(SyntheticWorld::point(0.1, 0.1, {{1, 0.6}}), 3);
+  const HeldOut before = held_out(world.space, d, model, {{}, false, 0});
+  const HeldOut after = held_out(world.space, d, model, {{1}, false, 0});
+  EXPECT_EQ(before.count, 11);
+  EXPECT_THAT(before.parts, testing::ElementsAre("experiment one", "experiment two"));
+  EXPECT_LT(after.gap(), 0.25 * before.gap());
+}
+
+TEST_F(DiagnosisOf, TheMapNamesWhatDisagrees) {
+  Measurements measured = world.measure({world.space.nominal(), {}}, 5, 7);
+  measured.values[8].value += 20 * measured.values[8].uncertainty;
+  const Diagnosis d = diagnose(world.space, measured, model);
+  EXPECT_EQ(d.numbers.front().where, measured.values[8].label);
+  EXPECT_TRUE(d.numbers.front().significant);
+  EXPECT_GT(d.numbers.front().z, 5);
+  EXPECT_LT(d.nominal.p, 1e-3);
+  EXPECT_THAT(d.parts,
+              testing::Contains(testing::AllOf(testing::Field(&Disagreement::where, "experiment two"),
+                                               testing::Field(&Disagreement::significant, true))));
+}
+
+TEST(Evidence, OfAGaussianIsItsIntegral) {
+  // exp(-x'x / (2 s^2)) over [-1, 1]^3: (s sqrt(2 pi) erf(1 / (s sqrt 2)))^3, times the uniform prior 1/8.
+  for (const double s : {0.5, 0.05, 0.005}) {
+    const Evidence e = integrate([&](const Eigen::VectorXd& x) { return -0.5 * x.squaredNorm() / (s * s); },
+                                 {Eigen::VectorXd::Constant(3, -1), Eigen::VectorXd::Constant(3, 1)}, 5);
+    const double one = s * std::sqrt(2 * std::numbers::pi) * std::erf(1 / (s * std::sqrt(2.0)));
+    EXPECT_NEAR(e.log_evidence, 3 * std::log(one) - std::log(8), 0.15) << s;
+    EXPECT_NEAR(e.quantile(1, 0.5), 0, 0.15 * s) << s;
+    if (s < 0.2) {
+      EXPECT_NEAR(e.quantile(1, 0.95), 1.645 * s, 0.2 * s) << s;
+    }
+  }
+}
+
+TEST(Evidence, FindsBothOfTwoModes) {
+  const auto two = [](const Eigen::VectorXd& x) {
+    const double a = std::pow((x[0] - 0.7) / 0.05, 2), b = std::pow((x[0] + 0.7) / 0.05, 2);
+    return std::log(std::exp(-0.5 * a) + std::exp(-0.5 * b) + 1e-300);
+  };
+  const Evidence e = integrate(two, {Eigen::VectorXd::Constant(1, -1), Eigen::VectorXd::Constant(1, 1)}, 5);
+  EXPECT_NEAR(e.log_evidence, std::log(2 * 0.05 * std::sqrt(2 * std::numbers::pi) / 2), 0.1);
+  EXPECT_LT(e.quantile(0, 0.25), -0.6);
+  EXPECT_GT(e.quantile(0, 0.75), 0.6);
+}
+
+TEST(ResponseSurface, LearnsScatterAndForetellsWithinItsUncertainty) {
+  const SyntheticWorld world;
+  const DesignRuns runs = world.design(4);
+  const ResponseSurface surface(world.space, "one", runs[0]);
+  EXPECT_NEAR(std::sqrt(surface.scatter()(0, 0)), 1.0, 0.2);  // 0.6^2 + 0.8^2
+  EXPECT_NEAR(surface.scatter()(0, 1), 0.36, 0.25);
+  double sum = 0;
+  int count = 0;
+  Random random(9, 0, RandomPurpose::design);
+  for (int k = 0; k < 60; ++k) {
+    ModelPoint at = SyntheticWorld::point(random.uniform(-1, 1), random.uniform(-1, 1));
+    const auto e = static_cast<std::size_t>(k % 4);
+    if (e != 2) at.effects.push_back({e, Eigen::VectorXd::Constant(1, random.uniform(0, 1))});
+    const SurfacePrediction p = surface.at(at);
+    for (int c = 0; c < 6; ++c, ++count)
+      sum += std::pow(p.mean[c] - world.mean(0, c, at), 2) / p.covariance(c, c);
+  }
+  EXPECT_LT(sum / count, 2.0);
+  EXPECT_GT(sum / count, 0.2);
+}
+
+}  // namespace
+}  // namespace scree
