@@ -4,10 +4,12 @@
 #include "analysis/diagnose/outcome.h"
 #include "cli/commands.h"
 #include "cli/ensemble/diagnosis_session.h"
+#include "cli/ensemble/scenario_patch.h"
 #include "cli/ensemble_console.h"
 #include "cli/output_folder.h"
 #include "cli/progress.h"
 #include "cli/run_through.h"
+#include "sim/io/text_file.h"
 
 namespace fs = std::filesystem;
 
@@ -46,6 +48,22 @@ void print_plan(const scree::DiagnosisSession& session, const scree::DiagnosisMo
     fmt::print("nothing is known of the time of some experiments yet: their first simulations will tell\n");
 }
 
+// The fitted model, as a scenario of every experiment.
+void write_patches(const scree::DiagnosisSession& session, const scree::DiagnosisModel& model,
+                   const scree::DiagnosisOutcome& outcome, const fs::path& out) {
+  const auto& fitted = outcome.augmented ? outcome.augmented : outcome.calibrated;
+  if (!fitted) return;
+  for (const scree::Dataset::Experiment& experiment : session.data().experiments) {
+    const fs::path file = out / (experiment.name + ".yaml");
+    scree::write_text_file(
+        file, scree::scenario_patch(experiment.file, out,
+                                    scree::overrides_at(model, session.space(), experiment, fitted->at),
+                                    {outcome.augmented ? "The fitted model with the effect that was named."
+                                                       : "The re-calibrated model."}));
+    fmt::print("scenario: {}\n", file.string());
+  }
+}
+
 }  // namespace
 
 int run_diagnose(const DiagnoseOptions& options) {
@@ -65,7 +83,7 @@ int run_diagnose(const DiagnoseOptions& options) {
       return kBadInput;
     }
   scree::DiagnosisSession session(loaded.model, scree::join_datasets(datasets), options.without, asset_dir());
-  const auto store = open_store(options.store, options.plan && fs::exists(options.store));
+  const auto store = open_store(options.store, false);
   if (!store) return kBadInput;
   if (options.plan) {
     print_plan(session, loaded.model, *store);
@@ -84,6 +102,7 @@ int run_diagnose(const DiagnoseOptions& options) {
   for (const std::string& line : scree::diagnosis_in_words(outcome)) fmt::print("{}\n", line);
   for (const std::string& note : outcome.notes) fmt::print("note: {}\n", note);
   scree::write_diagnosis(loaded.model.title, outcome, out);
+  write_patches(session, loaded.model, outcome, out);
   fmt::print("report: {}\n", (out / "report.html").string());
   return kOk;
 }

@@ -235,11 +235,12 @@ TEST_F(DatasetFile, WrongExperimentsAreNamed) {
 TEST_F(DatasetFile, ThatIsWrittenCanBeRead) {
   DatasetDraft draft;
   draft.title = "with \"quotes\" and \\";
-  draft.experiment = "heap";
-  draft.scenario = source / "scenarios/repose_lab.yaml";
-  draft.overrides = {"material.mu=0.3"};
-  draft.observables = {{"angle_deg", {25, 2, 4}}, {"runaways", {3, 0, 4}}, {"spread_95", {1.5, NAN, 1}}};
-  EXPECT_THAT(write_dataset(draft, folder), ElementsAre("runaways", "spread_95"));
+  draft.experiments.push_back(
+      {"heap",
+       source / "scenarios/repose_lab.yaml",
+       {"material.mu=0.3"},
+       {{"angle_deg", {25, 2, 4}}, {"runaways", {3, 0, 4}}, {"spread_95", {1.5, NAN, 1}}}});
+  EXPECT_THAT(write_dataset(draft, folder), ElementsAre("heap/runaways", "heap/spread_95"));
   DatasetResult r = load_dataset(folder / "dataset.yaml", source / "assets");
   ASSERT_THAT(r.errors, IsEmpty()) << r.errors.front().text();
   EXPECT_EQ(r.dataset.title, draft.title);
@@ -247,7 +248,7 @@ TEST_F(DatasetFile, ThatIsWrittenCanBeRead) {
   ASSERT_EQ(r.dataset.observables.size(), 1u);
   EXPECT_DOUBLE_EQ(r.dataset.observables[0].uncertainty, 1);
   draft.relative_uncertainty = 0.2;
-  EXPECT_THAT(write_dataset(draft, folder), ElementsAre("runaways"));
+  EXPECT_THAT(write_dataset(draft, folder), ElementsAre("heap/runaways"));
   r = load_dataset(folder / "dataset.yaml", source / "assets");
   ASSERT_EQ(r.dataset.observables.size(), 2u);
   EXPECT_DOUBLE_EQ(r.dataset.observables[1].uncertainty, 0.3);

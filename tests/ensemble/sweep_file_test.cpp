@@ -175,7 +175,8 @@ TEST_F(SweepFile, OutputsAreThoseOfAnyPoint) {
   ASSERT_TRUE(r.errors.empty()) << r.errors.front().text();
   EXPECT_EQ(why_not_given(r.sweep, "chi_S5"), "");
   EXPECT_THAT(why_not_given(r.sweep, "chi_S6"), HasSubstr("cuts the slope into 4 sections"));
-  EXPECT_THAT(why_not_given(r.sweep.points[0].scenario, "chi_S5"), HasSubstr("4 sections, without 'of' (output.sections)"));
+  EXPECT_THAT(why_not_given(r.sweep.points[0].scenario, "chi_S5"),
+              HasSubstr("4 sections, without 'of' (output.sections)"));
 }
 
 TEST_F(SweepFile, PassingCurveIsATargetForItsDiameters) {

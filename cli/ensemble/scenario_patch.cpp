@@ -1,0 +1,58 @@
+#include "cli/ensemble/scenario_patch.h"
+
+#include <fmt/format.h>
+
+namespace scree {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Maps within maps, in the order in which their keys came.
+struct Node {
+  std::string value;
+  std::vector<std::pair<std::string, Node>> children;
+
+  void set(const std::string& key, const std::string& text) {
+    const auto dot = key.find('.');
+    Node& child = at(key.substr(0, dot));
+    if (dot == std::string::npos)
+      child.value = text;
+    else
+      child.set(key.substr(dot + 1), text);
+  }
+  Node& at(const std::string& key) {
+    for (auto& [name, child] : children)
+      if (name == key) return child;
+    children.push_back({key, {}});
+    return children.back().second;
+  }
+  void write(std::string& text, int depth) const {
+    for (const auto& [name, child] : children) {
+      text += fmt::format("{:{}}{}:{}\n", "", 2 * depth, name,
+                          child.children.empty() ? " " + child.value : std::string());
+      child.write(text, depth + 1);
+    }
+  }
+};
+
+}  // namespace
+
+std::string scenario_patch(const fs::path& scenario, const fs::path& from,
+                           const std::vector<std::string>& overrides,
+                           const std::vector<std::string>& comment) {
+  Node root;
+  for (const std::string& each : overrides) {
+    const auto at = each.find('=');
+    root.set(each.substr(0, at), each.substr(at + 1));
+  }
+  std::string text;
+  for (const std::string& line : comment) text += "# " + line + "\n";
+  text += fmt::format("extends: {}\n", fs::absolute(scenario)
+                                           .lexically_normal()
+                                           .lexically_relative(fs::absolute(from).lexically_normal())
+                                           .generic_string());
+  root.write(text, 0);
+  return text;
+}
+
+}  // namespace scree

@@ -1,0 +1,200 @@
+#include "cli/ensemble/diagnosis_session.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <fstream>
+#include <numbers>
+
+#include "cli/ensemble/scenario_patch.h"
+#include "cli/ensemble/twin.h"
+#include "scree_version.h"
+#include "sim/io/text_file.h"
+#include "sim/material/random.h"
+
+namespace scree {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using Kind = DiagnosisVerdict::Kind;
+
+const fs::path kAssets = fs::path(SCREE_SOURCE_DIR) / "assets";
+
+// The program without its simulator: a run's numbers are formulas of its scenario, plus noise of its seed.
+class FormulaSimulator {
+ public:
+  std::vector<std::optional<StoredResult>> operator()(const std::vector<RunRequest>& requests) {
+    std::vector<std::optional<StoredResult>> results;
+    for (const RunRequest& request : requests) {
+      ++asked;
+      const YAML::Node scenario = YAML::Load(request.scenario);
+      if (scenario["effects"]) ++with_effects;
+      StoredResult result;
+      result.state = RunState::done;
+      result.wall_seconds = 1;
+      Random random(request.seed, static_cast<std::uint64_t>(scenario["grading"].Scalar().size()),
+                    RandomPurpose::measurement);
+      const double mu = scenario["material"]["mu"].as<double>();
+      const auto effect = [&](const char* name, const char* key) {
+        return scenario["effects"] && scenario["effects"][name] ? scenario["effects"][name][key].as<double>()
+                                                                : 0.0;
+      };
+      const double cohesion = effect("cohesion", "bond_number"), twisting = effect("twisting", "mu_t"),
+                   rolling = effect("rolling_by_size", "exponent"),
+                   hidden = effect("restitution", "damping_ratio");
+      const double means[] = {100 * mu + 4 * cohesion + 3 * twisting + 8 * rolling,
+                              60 * mu - 5 * cohesion + 9 * twisting * twisting + 3 * hidden,
+                              20 * mu + 2 * cohesion - 7 * twisting + 2 * rolling - 6 * hidden,
+                              -30 * mu + 6 * cohesion + twisting - 6 * rolling - 9 * hidden,
+                              5 * mu + 3 * twisting + 5 * rolling + 9 * hidden,
+                              3 * cohesion * cohesion - 2 * twisting - 4 * rolling + 5 * hidden};
+      const char* names[] = {"half_coverage_deg", "chi_ring1",  "chi_ring2",
+                             "chi_ring3",         "profile_25", "spread_95"};
+      for (int k = 0; k < 6; ++k) {
+        const double normal = std::sqrt(-2 * std::log(1 - random.uniform())) *
+                              std::cos(2 * std::numbers::pi * random.uniform());
+        result.outputs[names[k]] = means[k] + 0.3 * normal;
+      }
+      result.outputs["at_rest"] = 1;
+      results.emplace_back(std::move(result));
+    }
+    return results;
+  }
+  int asked = 0, with_effects = 0;
+};
+
+class Session : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder = fs::temp_directory_path() / ("scree_session_" + std::to_string(getpid()));
+    fs::create_directories(folder);
+    const std::string scenarios = (fs::path(SCREE_SOURCE_DIR) / "scenarios").string();
+    write_text_file(
+        folder / "model.yaml",
+        "parameters:\n  material.mu: {nominal: 0.25, from: 0.15, to: 0.35}\n"
+        "ties: {material.mu_r: material.mu}\n"
+        "effects: [cohesion, twisting, rolling_by_size, restitution]\n"
+        "experiments:\n  heap:\n    scenario: " +
+            scenarios +
+            "/repose_lab_coarse.yaml\n    set: {experiment.mass_kg: 40}\n"
+            "    observables: [half_coverage_deg, chi_ring1, chi_ring2, chi_ring3, profile_25, spread_95]\n");
+    auto loaded = load_model(folder / "model.yaml", kAssets);
+    ASSERT_TRUE(loaded.errors.empty()) << loaded.errors.front().text();
+    model = loaded.model;
+  }
+  void TearDown() override { fs::remove_all(folder); }
+
+  // A twin's data as diagnose reads them from its files.
+  JoinedData data_of(const TwinSpec& spec, TwinTruth* truth = nullptr) {
+    FormulaSimulator formula;
+    const Twin twin = make_twin(model, spec, kAssets, std::ref(formula), std::ref(formula));
+    if (truth != nullptr) *truth = twin.truth;
+    write_dataset(twin.data, folder);
+    const DatasetResult read = load_dataset(folder / "dataset.yaml", kAssets);
+    EXPECT_TRUE(read.errors.empty());
+    return join_datasets({read.dataset});
+  }
+  DiagnosisOutcome diagnosed(const TwinSpec& spec, const std::vector<std::string>& without = {}) {
+    DiagnosisSession session(model, data_of(spec), without, kAssets);
+    return session.run(std::ref(simulator));
+  }
+  static std::string named(const DiagnosisOutcome& o) {
+    std::string text;
+    const auto& named = o.diagnosis.verdict.named;
+    if (named.empty()) return text;
+    for (const std::size_t e : o.diagnosis.judgements[named.front()].hypothesis.effects)
+      text += o.space.effects[e].name + " ";
+    return text;
+  }
+
+  fs::path folder;
+  DiagnosisModel model;
+  FormulaSimulator simulator;
+};
+
+TEST_F(Session, NamesTheEffectThatATwinHides) {
+  for (const std::string effect : {"cohesion", "twisting", "rolling_by_size"}) {
+    TwinSpec spec{{effect}, 6, 5, 0.5, 3, ""};
+    const DiagnosisOutcome o = diagnosed(spec);
+    EXPECT_EQ(named(o), effect + " ");
+    ASSERT_TRUE(o.calibrated && o.augmented && o.held_out_augmented);
+    EXPECT_LT(o.held_out_augmented->gap(), 0.25 * o.held_out_calibrated->gap());
+    EXPECT_LT(o.augmented->gap.chi2, 0.4 * o.calibrated->gap.chi2);
+    EXPECT_GT(o.augmented->gap.p, 1e-3);
+    EXPECT_THAT(diagnosis_in_words(o).front(), HasSubstr(effect));
+  }
+}
+
+TEST_F(Session, SaysUnknownWithoutTheEffectInItsLibrary) {
+  const DiagnosisOutcome o = diagnosed({{"restitution"}, 8, 5, 0.5, 4, ""}, {"restitution"});
+  EXPECT_EQ(o.diagnosis.verdict.kind, Kind::unknown);
+  EXPECT_FALSE(o.augmented);
+  EXPECT_THAT(diagnosis_in_words(o).front(), HasSubstr("not among the 3 effects"));
+}
+
+TEST_F(Session, NamesNothingWhereNothingIsHidden) {
+  for (const std::uint64_t seed : {5, 6, 7}) {
+    const DiagnosisOutcome o = diagnosed({{}, 0, 5, 0.5, seed, ""});
+    EXPECT_TRUE(o.diagnosis.verdict.kind == Kind::nothing || o.diagnosis.verdict.kind == Kind::calibration);
+  }
+}
+
+TEST_F(Session, TheDesignIsTheSameForAllDataAndWhenAnEffectIsLeftOut) {
+  const JoinedData data = data_of({{"cohesion"}, 4, 5, 0.5, 8, ""});
+  const DiagnosisSession all(model, data, {}, kAssets), fewer(model, data, {"cohesion"}, kAssets);
+  std::set<std::string> keys;
+  for (const RunRequest& request : all.design()[0].requests) keys.insert(request.key);
+  EXPECT_EQ(keys.size(), all.design()[0].requests.size());
+  EXPECT_EQ(keys.size(), 6u + 24 + 4 * 10);
+  for (const RunRequest& request : fewer.design()[0].requests) EXPECT_TRUE(keys.contains(request.key));
+  EXPECT_EQ(fewer.design()[0].requests.size(), keys.size() - 10);
+}
+
+TEST_F(Session, TwinsHaveTheStrengthAskedForAndUseNoSeedOfTheDesign) {
+  TwinTruth truth;
+  data_of({{"twisting"}, 4, 5, 0.5, 9, ""}, &truth);
+  ASSERT_EQ(truth.detectability.size(), 1u);
+  EXPECT_NEAR(truth.detectability[0], 4, 0.05);
+  EXPECT_LE(truth.at.base.cwiseAbs().maxCoeff(), 0.6);
+  EXPECT_THROW(data_of({{"twisting"}, 4000, 5, 0.5, 9, ""}), TooWeak);
+  const std::string answer = twin_answer(model, {{"twisting"}, 4, 5, 0.5, 9, ""}, truth);
+  EXPECT_THAT(answer, HasSubstr("effects.twisting.mu_t"));
+  std::ifstream yaml(folder / "dataset.yaml"), table(folder / "observables.csv");
+  const std::string public_text{std::istreambuf_iterator<char>(yaml), {}},
+      values{std::istreambuf_iterator<char>(table), {}};
+  EXPECT_EQ(public_text.find("twisting"), std::string::npos);
+  EXPECT_EQ(values.find("twisting"), std::string::npos);
+}
+
+TEST_F(Session, ModelFilesAreChecked) {
+  const auto error = [&](const std::string& text) {
+    write_text_file(folder / "bad.yaml", text);
+    const auto loaded = load_model(folder / "bad.yaml", kAssets);
+    return loaded.errors.empty() ? std::string() : loaded.errors.front().text();
+  };
+  EXPECT_THAT(error("title: x\n"), HasSubstr("parameters"));
+  const std::string head = "parameters: {material.mu: {nominal: 0.2, from: 0.1, to: 0.3}}\n";
+  EXPECT_EQ(error(head), "");
+  EXPECT_THAT(error("parameters: {material.mu: {nominal: 0.4, from: 0.1, to: 0.3}}\n"),
+              HasSubstr("must lie between"));
+  EXPECT_THAT(error("parameters: {material.mu: {from: 0.1, to: 0.3}}\n"), HasSubstr("nominal"));
+  EXPECT_THAT(error(head + "effects: [cohesoin]\n"), HasSubstr("did you mean 'cohesion'"));
+  EXPECT_THAT(error(head + "effects: [cohesion, cohesion]\n"), HasSubstr("stands twice"));
+  EXPECT_THAT(error(head + "simulations: {effect: 2}\n"), HasSubstr("from 4 to 1000"));
+  EXPECT_THAT(error(head + "experiments: {a: {scenario: none.yaml, observables: [angle_deg]}}\n"),
+              HasSubstr("no file"));
+}
+
+TEST(ScenarioPatch, NestsKeysAndNamesTheFileFromWhereItLies) {
+  EXPECT_EQ(scenario_patch("/data/scenarios/a.yaml", "/data/runs/x",
+                           {"material.mu=0.3", "effects.cohesion.bond_number=1", "material.mu_r=0.2"},
+                           {"What it is."}),
+            "# What it is.\nextends: ../../scenarios/a.yaml\nmaterial:\n  mu: 0.3\n  mu_r: 0.2\neffects:\n  "
+            "cohesion:\n    bond_number: 1\n");
+}
+
+}  // namespace
+}  // namespace scree
