@@ -93,6 +93,17 @@ TEST(EquivalenceFit, WhatCannotBeFollowedIsLeftOut) {
   EXPECT_FALSE(table.at(0.4, 0.4, 0.4));
 }
 
+TEST(EquivalenceFit, WhatComesNearestIsTakenWithinTheBound) {
+  EquivalenceSpec s = spec();
+  s.friction.to = s.rolling.to = 0.47;  // mu = mu_r = 0.4 would need 0.5
+  int simulations = 0;
+  const EquivalenceNode last = fit_equivalence(s, engines(1.25, 0, simulations)).back();
+  ASSERT_TRUE(last.found);
+  EXPECT_NEAR(last.friction, 0.47, 0.01);
+  EXPECT_LT(last.angle_impulse, last.angle_rrlinear);
+  EXPECT_NEAR(last.angle_impulse, last.angle_rrlinear, s.within);
+}
+
 TEST(EquivalenceFit, WrongFilesAreToldWithTheirPlace) {
   const fs::path file = fs::temp_directory_path() / ("scree_fit_" + std::to_string(getpid()) + ".yaml");
   const auto first_error = [&](const std::string& equivalent) {
