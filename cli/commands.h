@@ -87,11 +87,17 @@ struct AnalyseOptions {
   std::optional<double> relative_uncertainty;  ///< of values with one repeat
 };
 
+struct EffectsOptions {
+  std::string name;       ///< empty: all, a line each
+  bool document = false;  ///< docs/effects.md
+};
+
 int run_analyse(const AnalyseOptions& options);
 int run_run(const RunOptions& options);
 int run_compare(const std::filesystem::path& dir, const std::vector<std::string>& cases);
 int run_validate(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 int run_schema();
+int run_effects(const EffectsOptions& options);
 int run_calibrate(const CalibrateOptions& options);
 int run_predict(const PredictOptions& options);
 int run_sweep(const SweepOptions& options);

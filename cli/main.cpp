@@ -30,6 +30,7 @@ Examples:
   scree compare runs/canadian_malartic_10m               the comparison of a run, as a table
   scree analyse heap.csv --scenario scenarios/repose_lab.yaml   what a pile of another program gives
   scree validate scenarios/a1_10m.yaml                   check a file without running it
+  scree effects breakage                                 an effect that a scenario can switch on
   scree schema > scenario.schema.json                    for editors that know JSON Schema
 )";
 
@@ -218,6 +219,15 @@ int main(int argc, char** argv) {
       "measured\n"
       "  scree analyse dump.lammpstrj --experiment repose_lift --length-unit mm --up y\n");
 
+  EffectsOptions effects;
+  CLI::App* effects_app = app.add_subcommand(
+      "effects", "Physics and measurement that a scenario can switch on: all, or everything about one");
+  effects_app->add_option("name", effects.name, "Effect; default: all, a line each");
+  effects_app->add_flag("--document", effects.document, "Print docs/effects.md");
+  effects_app->footer(
+      "\nExamples:\n  scree effects\n  scree effects cohesion\n"
+      "  scree run scenarios/repose_lab_coarse.yaml --set effects.cohesion.bond_number=0.5\n");
+
   CLI::App* schema_app = app.add_subcommand("schema", "Print the JSON Schema of scenario files");
 
   try {
@@ -228,7 +238,7 @@ int main(int argc, char** argv) {
     if (names_one && app.get_subcommands().empty()) {
       fmt::print(stderr,
                  "scree: {}: no such subcommand; there are run, sweep, reproduce, study, calibrate, predict, "
-                 "compare, analyse, validate and schema\n",
+                 "compare, analyse, validate, effects and schema\n",
                  argv[1]);
       return kBadInput;
     }
@@ -250,6 +260,7 @@ int main(int argc, char** argv) {
     if (*compare_app) return run_compare(compare_dir, compare_cases);
     if (*validate_app) return run_validate(validate_file, validate_overrides);
     if (*analyse_app) return run_analyse(analyse);
+    if (*effects_app) return run_effects(effects);
     if (*schema_app) return run_schema();
   } catch (const std::exception& error) {
     fmt::print(stderr, "scree: {}\n", error.what());

@@ -100,6 +100,7 @@ TEST_F(Cli, BadInputIsOneLineAndExitCodeTwo) {
       {"validate nowhere.yaml", "nowhere.yaml"},
       {"run nowhere.yaml --seeds 0", "--seeds"},
       {"run nowhere.yaml --threads x", "--threads"},
+      {"effects magic", "no such effect; there are cohesion"},
   };
   for (const Case& c : cases) {
     const Called result = call(c.arguments);
@@ -145,6 +146,14 @@ TEST_F(Cli, EffectsOnMeasurementChangeGradingsAlone) {
   for (std::size_t k = 0; k < truth.second["sections"].size(); ++k)
     EXPECT_NEAR(limited.second["sections"][k]["mass_t"]["mean"].get<double>(),
                 truth.second["sections"][k]["mass_t"]["mean"].get<double>(), 1e-9);
+}
+
+TEST_F(Cli, EffectsAreToldInWords) {
+  const Called all = call("effects"), one = call("effects detection_limit");
+  EXPECT_EQ(all.code, 0);
+  EXPECT_NE(all.text.find("small grains that images miss (measurement)"), std::string::npos) << all.text;
+  EXPECT_EQ(one.code, 0);
+  EXPECT_NE(one.text.find("| `ratio` |"), std::string::npos) << one.text;
 }
 
 TEST_F(Cli, InterruptKeepsWhatIsDone) {

@@ -2,9 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <set>
 
 #include "scree_version.h"
+#include "sim/effects/describe.h"
 #include "sim/scene/run.h"
 #include "tests/scene/scenario_fixture.h"
 
@@ -57,6 +59,17 @@ TEST(EffectList, AbsentMeansAbsent) {
     use.values.front() = effect.absent;
     EXPECT_FALSE(differs(modifications(std::span(&use, 1), {}))) << effect.name;
   }
+}
+
+TEST(EffectList, IsTheDocument) {
+  std::ifstream file(std::filesystem::path(SCREE_SOURCE_DIR) / "docs/effects.md");
+  const std::string there{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_TRUE(there == effects_document())
+      << "docs/effects.md is not what the effects say; renew it: scree effects --document > docs/effects.md";
+  for (const Effect& effect : all_effects())
+    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(SCREE_SOURCE_DIR) / "docs/pictures/effects" /
+                                        (std::string(effect.name) + ".svg")))
+        << effect.name << ": docs/pictures/effects/make.sh " << effect.name;
 }
 
 TEST(ScenarioEffects, AreReadWithTheirDefaults) {
