@@ -16,6 +16,7 @@ struct HalfCone {
 /// dumped). Height and radius are those of the cone fitted to its flank; the outermost cell reaches on to
 /// where grains no longer overlap; runaways and the inner cells count as mass_outside. Throws
 /// std::invalid_argument when there is no original or the heap is no cone.
-HalfCone analyse_half_cone(const std::vector<Grain>& pile, const std::vector<Grain>& original);
+HalfCone analyse_half_cone(const std::vector<Grain>& pile, const std::vector<Grain>& original,
+                           const Measurement& measured = {});
 
 }  // namespace scree

@@ -26,7 +26,7 @@ double surface_at(const ReposeAngle& read, double radius) {
 }  // namespace
 
 HeapShape measure_heap_shape(const std::vector<Grain>& heap, const std::vector<Grain>& original,
-                             const ReposeAngle& read) {
+                             const ReposeAngle& read, const Measurement& measured) {
   if (heap.empty()) throw std::invalid_argument("the heap has no grain");
   std::vector<NamedGrains> rings;
   for (int k = 0; k < kHeapRings; ++k)
@@ -40,12 +40,13 @@ HeapShape measure_heap_shape(const std::vector<Grain>& heap, const std::vector<G
     volume += std::numbers::pi / 6 * grain.diameter * grain.diameter * grain.diameter;
     const double step = r / read.radius * kHeapRings;
     if (step < kHeapRings)
-      rings[static_cast<std::size_t>(step)].grains.push_back(&grain);
+      rings[static_cast<std::size_t>(std::clamp(step - measured.border_shift, 0.0, kHeapRings - 1.0))]
+          .grains.push_back(&grain);
     else
       outside += grain.mass;
   }
   HeapShape shape;
-  shape.rings = tabulate(rings, original);
+  shape.rings = tabulate(rings, original, measured);
   shape.rings.mass_outside = outside;
   for (std::size_t k = 0; k < kHeapRings; ++k) {
     shape.mass_share[k] = shape.rings.sections[k].mass / mass;

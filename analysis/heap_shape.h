@@ -21,6 +21,6 @@ struct HeapShape {
 /// grain as filled). A cone of radius R and height H has the profile 1 - r / R. Throws std::invalid_argument
 /// when `heap` or `original` is empty.
 HeapShape measure_heap_shape(const std::vector<Grain>& heap, const std::vector<Grain>& original,
-                             const ReposeAngle& read);
+                             const ReposeAngle& read, const Measurement& measured = {});
 
 }  // namespace scree

@@ -30,7 +30,8 @@ double range_of(const std::vector<double>& values) {
 }  // namespace
 
 Lateral analyse_lateral(const std::vector<Grain>& pile, const std::vector<Grain>& original,
-                        double crest_height, int n, int points, double strip_width) {
+                        double crest_height, int n, int points, double strip_width,
+                        const Measurement& measured) {
   if (n < 1 || points < 1 || !(strip_width > 0) || !(crest_height > 0))
     throw std::invalid_argument(
         fmt::format("{} sections, {} dump points, strips of {} m, crest at {} m: all must be above 0", n,
@@ -38,7 +39,7 @@ Lateral analyse_lateral(const std::vector<Grain>& pile, const std::vector<Grain>
   std::vector<std::map<int, NamedGrains>> strips(static_cast<std::size_t>(n));
   std::vector<WeighedValue> first_point;
   for (const Grain& grain : pile) {
-    const int slice = slice_of(grain, crest_height, n);
+    const int slice = slice_of(grain, crest_height, n, measured.border_shift);
     if (slice < 0) continue;
     const double y = grain.position.y();
     strips[static_cast<std::size_t>(slice)][static_cast<int>(std::lround(y / strip_width))].grains.push_back(
@@ -57,7 +58,7 @@ Lateral analyse_lateral(const std::vector<Grain>& pile, const std::vector<Grain>
       section.y.push_back(index * strip_width);
       counted.push_back(std::move(strip));
     }
-    for (const Section& strip : tabulate(counted, original).sections) {
+    for (const Section& strip : tabulate(counted, original, measured).sections) {
       section.chi.push_back(strip.chi);
       section.d50_rel.push_back(strip.d50_rel);
       section.mass.push_back(strip.mass);

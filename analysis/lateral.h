@@ -32,6 +32,7 @@ inline constexpr std::size_t kLeastStripGrains = 20;
 /// y = 0. `points`: number of dump points, visited in turn from the first. Throws std::invalid_argument for a
 /// width of 0, no section, no point or no original.
 Lateral analyse_lateral(const std::vector<Grain>& pile, const std::vector<Grain>& original,
-                        double crest_height, int n, int points, double strip_width = 4);
+                        double crest_height, int n, int points, double strip_width = 4,
+                        const Measurement& measured = {});
 
 }  // namespace scree

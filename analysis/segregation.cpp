@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "analysis/counted_grains.h"
 #include "analysis/permeability.h"
 
 namespace scree {
@@ -17,16 +18,10 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-std::optional<PassingCurve> curve_of(const std::vector<const Grain*>& grains) {
+std::optional<PassingCurve> curve_of(const std::vector<const Grain*>& grains, const Measurement& measured) {
   if (grains.empty()) return std::nullopt;
-  std::vector<double> diameters, masses;
-  diameters.reserve(grains.size());
-  masses.reserve(grains.size());
-  for (const Grain* grain : grains) {
-    diameters.push_back(grain->diameter);
-    masses.push_back(grain->mass);
-  }
-  return PassingCurve(std::move(diameters), masses);
+  CountedGrains counted = count_grains(grains, measured);
+  return PassingCurve(std::move(counted.diameters), counted.masses);
 }
 
 /// Preferred numbers R10 (ISO 3) from just below the smallest to just above the largest diameter; 1 m is
@@ -50,13 +45,14 @@ PoreMaterial pore_material(const PassingCurve& curve) {
 
 }  // namespace
 
-SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<Grain>& original) {
+SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<Grain>& original,
+                      const Measurement& measured) {
   if (original.empty()) throw std::invalid_argument("the original material has no grain");
 
   std::vector<const Grain*> all;
   all.reserve(original.size());
   for (const Grain& grain : original) all.push_back(&grain);
-  const PassingCurve whole = *curve_of(all);
+  const PassingCurve whole = *curve_of(all, measured);
 
   SectionTable table;
   table.d0_log = whole.mean_log_diameter();
@@ -73,7 +69,7 @@ SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<G
     section.name = part.name;
     section.x_over_l = part.x_over_l;
     section.grains = static_cast<int>(part.grains.size());
-    const auto curve = curve_of(part.grains);
+    const auto curve = curve_of(part.grains, measured);
     const auto diameter = [&](double p) { return curve ? curve->diameter(p) : nan; };
     section.mass = curve ? curve->mass() : 0;
     // A material of one size has no coarser quartile to segregate: chi is not defined.
@@ -105,14 +101,14 @@ SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<G
   return table;
 }
 
-int slice_of(const Grain& grain, double crest_height, int n) {
+int slice_of(const Grain& grain, double crest_height, int n, double border_shift) {
   const double below_crest = (crest_height - grain.position.z()) / crest_height;
   if (!(below_crest >= 0)) return -1;  // above the crest, or no number
-  return static_cast<int>(std::min(below_crest * n, n - 1.0));
+  return static_cast<int>(std::clamp(below_crest * n - border_shift, 0.0, n - 1.0));
 }
 
 SectionTable analyse_sections(const std::vector<Grain>& pile, const std::vector<Grain>& original,
-                              double crest_height, int n) {
+                              double crest_height, int n, const Measurement& measured) {
   if (n < 1) throw std::invalid_argument(fmt::format("{} sections: at least 1 is needed", n));
   if (!(crest_height > 0))
     throw std::invalid_argument(fmt::format("crest height {} m must be above 0", crest_height));
@@ -120,13 +116,13 @@ SectionTable analyse_sections(const std::vector<Grain>& pile, const std::vector<
   for (int k = 0; k < n; ++k) slices.push_back({fmt::format("S{}", k + 1), (2.0 * k + 1) / (2.0 * n), {}});
   double outside = 0;
   for (const Grain& grain : pile) {
-    const int slice = slice_of(grain, crest_height, n);
+    const int slice = slice_of(grain, crest_height, n, measured.border_shift);
     if (slice < 0)
       outside += grain.mass;
     else
       slices[static_cast<std::size_t>(slice)].grains.push_back(&grain);
   }
-  SectionTable table = tabulate(slices, original);
+  SectionTable table = tabulate(slices, original, measured);
   table.mass_outside = outside;
   return table;
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/effects/measurement.h"
 #include "sim/io/snapshot.h"
 
 namespace scree {
@@ -66,18 +67,20 @@ struct NamedGrains {
 };
 
 /// Gradings and segregation of parts of a pile against `original` (every grain as dumped). chi = (log
-/// d_section - log d_0) / (log d_CQ - log d_0), thesis chapter 3. Throws std::invalid_argument when
-/// `original` is empty.
-SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<Grain>& original);
+/// d_section - log d_0) / (log d_CQ - log d_0), thesis chapter 3. `measured`: how diameters are measured, of
+/// the parts and of the original alike. Throws std::invalid_argument when `original` is empty.
+SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<Grain>& original,
+                      const Measurement& measured = {});
 
 /// Slice of equal height that a grain lies in, 0 at the crest to n - 1 at the floor; -1 above the crest. A
 /// small grain between the balls of the floor can lie below it: it belongs to the lowest slice.
-int slice_of(const Grain& grain, double crest_height, int n);
+/// `border_shift`: as in Measurement.
+int slice_of(const Grain& grain, double crest_height, int n, double border_shift = 0);
 
 /// Cuts the slope into `n` slices of equal height between `crest_height` (S1) and 0 (Sn) and analyses each
 /// against `original` (every grain as dumped). Grains above the crest height are outside (counted as
 /// mass_outside).
 SectionTable analyse_sections(const std::vector<Grain>& pile, const std::vector<Grain>& original,
-                              double crest_height, int n);
+                              double crest_height, int n, const Measurement& measured = {});
 
 }  // namespace scree

@@ -114,6 +114,11 @@ struct TwinOptions {
   bool force = false;                 ///< write into a folder that is not empty
 };
 
+struct EffectsOptions {
+  std::string name;       ///< empty: all, a line each
+  bool document = false;  ///< docs/effects.md
+};
+
 int run_analyse(const AnalyseOptions& options);
 int run_diagnose(const DiagnoseOptions& options);
 int run_twin(const TwinOptions& options);
@@ -121,6 +126,7 @@ int run_run(const RunOptions& options);
 int run_compare(const std::filesystem::path& dir, const std::vector<std::string>& cases);
 int run_validate(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 int run_schema();
+int run_effects(const EffectsOptions& options);
 int run_calibrate(const CalibrateOptions& options);
 int run_predict(const PredictOptions& options);
 int run_sweep(const SweepOptions& options);

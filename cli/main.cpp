@@ -31,6 +31,7 @@ Examples:
   scree analyse heap.csv --scenario scenarios/repose_lab.yaml   what a pile of another program gives
   scree diagnose data.yaml --model model.yaml            which effect the model lacks, if any
   scree validate scenarios/a1_10m.yaml                   check a file without running it
+  scree effects breakage                                 an effect that a scenario can switch on
   scree schema > scenario.schema.json                    for editors that know JSON Schema
 )";
 
@@ -240,7 +241,7 @@ int main(int argc, char** argv) {
       "\nExamples:\n"
       "  scree diagnose assets/datasets/laboratory/dataset.yaml --model scenarios/models/laboratory.yaml "
       "--plan\n"
-      "  scree diagnose heap.yaml buckets.yaml --model scenarios/models/laboratory.yaml\n"
+      "  scree diagnose heap.yaml buckets.yaml --model model.yaml\n"
       "\nAn interrupted diagnosis goes on where it stopped when it is started again.\n");
 
   TwinOptions twin;
@@ -278,6 +279,15 @@ int main(int argc, char** argv) {
       "--out "
       "measured\n");
 
+  EffectsOptions effects;
+  CLI::App* effects_app = app.add_subcommand(
+      "effects", "Physics and measurement that a scenario can switch on: all, or everything about one");
+  effects_app->add_option("name", effects.name, "Effect; default: all, a line each");
+  effects_app->add_flag("--document", effects.document, "Print docs/effects.md");
+  effects_app->footer(
+      "\nExamples:\n  scree effects\n  scree effects cohesion\n"
+      "  scree run scenarios/repose_lab_coarse.yaml --set effects.cohesion.bond_number=0.5\n");
+
   CLI::App* schema_app = app.add_subcommand("schema", "Print the JSON Schema of scenario files");
 
   try {
@@ -288,7 +298,7 @@ int main(int argc, char** argv) {
     if (names_one && app.get_subcommands().empty()) {
       fmt::print(stderr,
                  "scree: {}: no such subcommand; there are run, sweep, reproduce, study, calibrate, predict, "
-                 "compare, analyse, diagnose, twin, validate and schema\n",
+                 "compare, analyse, diagnose, twin, validate, effects and schema\n",
                  argv[1]);
       return kBadInput;
     }
@@ -312,6 +322,8 @@ int main(int argc, char** argv) {
     if (*analyse_app) return run_analyse(analyse);
     if (*diagnose_app) return run_diagnose(diagnose);
     if (*twin_app) return run_twin(twin);
+
+    if (*effects_app) return run_effects(effects);
     if (*schema_app) return run_schema();
   } catch (const std::exception& error) {
     fmt::print(stderr, "scree: {}\n", error.what());

@@ -32,6 +32,13 @@ double first_point(const Scenario& scenario) {
   return dump_points(scenario).front();
 }
 
+Measurement measurement_of(const Scenario& scenario) {
+  if (std::none_of(scenario.effects.begin(), scenario.effects.end(),
+                   [](const EffectUse& use) { return use.effect->measures; }))
+    return {};
+  return effective_model(scenario).changes.measurement;
+}
+
 // A section through the first dump point.
 void analyse_inside_of(const Scenario& scenario, const BenchSpec& bench, const std::vector<Grain>& dumped,
                        SeedResult& r) {
@@ -91,6 +98,7 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
       if (g.dump <= dumps) dumped.push_back(g);
     return dumped;
   };
+  const Measurement measured = measurement_of(scenario);
   if (const BenchSpec* bench = bench_of(scenario)) {
     const auto add_tables = [&](const std::vector<Grain>& pile, int dumps) {
       const std::vector<Grain> dumped = dumped_until(dumps);
@@ -99,7 +107,7 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
       numbers.insert(numbers.end(), scenario.output.further_sections.begin(),
                      scenario.output.further_sections.end());
       for (const int n : numbers) {
-        r.sections.push_back(analyse_sections(pile, dumped, bench->height, n));
+        r.sections.push_back(analyse_sections(pile, dumped, bench->height, n, measured));
         r.sections.back().dumps = dumps;
       }
     };
@@ -107,14 +115,14 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
     for (const RunOutcome::AfterDump& after : outcome.after_dumps) add_tables(after.pile.grains, after.dump);
     if (const std::vector<Grain> dumped = dumped_until(last); !dumped.empty()) {
       r.lateral = analyse_lateral(r.final_state.grains, dumped, bench->height, scenario.output.sections,
-                                  static_cast<int>(dump_points(scenario).size()));
+                                  static_cast<int>(dump_points(scenario).size()), 4, measured);
       analyse_inside_of(scenario, *bench, dumped, r);
     }
     r.profile = slope_profile(r.final_state.grains);
     r.slope_angle = slope_angle(r.profile, bench->height);
   } else if (std::holds_alternative<BucketDump>(scenario.experiment)) {
     try {
-      const HalfCone cone = analyse_half_cone(r.final_state.grains, dumped_until(last));
+      const HalfCone cone = analyse_half_cone(r.final_state.grains, dumped_until(last), measured);
       r.sections.push_back(cone.surface);
       r.slope_angle = cone.shape.angle;
     } catch (const std::invalid_argument&) {
@@ -124,7 +132,7 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
     r.rebound_height = outcome.rebound_height;
   } else if (!r.final_state.grains.empty()) {
     r.repose = measure_repose(r.final_state.grains);
-    r.heap = measure_heap_shape(r.final_state.grains, r.original, *r.repose);
+    r.heap = measure_heap_shape(r.final_state.grains, r.original, *r.repose, measured);
   }
   return r;
 }
@@ -185,6 +193,10 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
   if (left_out > 0 && bench_of(scenario))
     result.notes.push_back(fmt::format("{:.1f} t lie above the crest's height and belong to no section",
                                        left_out / 1000 / static_cast<double>(result.seeds.size())));
+  if (const Measurement measured = measurement_of(scenario); !measured.exact() || measured.border_shift != 0)
+    result.notes.push_back(
+        "gradings of sections, strips, cells and rings are as effects of measurement make them; angles, "
+        "layers and the inside of the pile are true");
   if (scenario.bullet)
     result.notes.push_back(
         scenario.bullet->error_deg

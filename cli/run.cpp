@@ -103,6 +103,13 @@ int run_run(const RunOptions& options) {
   if (!loaded.errors.empty()) return kBadInput;
   scree::Scenario& scenario = loaded.scenario;
 
+  if (scenario.output.trajectory && !scenario.effects.empty() &&
+      scree::effective_model(scenario).changes.breakage.on()) {
+    fmt::print(stderr,
+               "scree: effects.breakage: a trajectory has a row for each grain put in and none for "
+               "fragments; add --set output.trajectory=false\n");
+    return kBadInput;
+  }
   const fs::path out = options.out.empty() ? free_run_folder(scenario.name) : options.out;
   if (!prepare_folder(out, options.force)) return kBadInput;
   scenario.seeds = chosen_seeds(scenario, options.seeds);

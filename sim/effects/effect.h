@@ -10,6 +10,9 @@
 #include <vector>
 
 #include "sim/contact/contact_effects.h"
+#include "sim/effects/measurement.h"
+#include "sim/world/breakage.h"
+#include "sim/world/vibration.h"
 
 namespace scree {
 
@@ -24,11 +27,15 @@ struct Modifications {
   double fines_share = 0;                 ///< of the mass, finer than the grading's smallest size
   double fines_ratio = 1;                 ///< the grading's smallest diameter over that of the fines
   double release_speed = 0;               ///< m/s, along the bed, of a load when its gate opens
+  Vibration vibration;                    ///< of the ground
+  Breakage breakage;
+  Measurement measurement;  ///< how the finished pile is measured
 };
 
 /// What of the model effects need to know.
 struct EffectContext {
   double d50 = 1;         ///< m, of the grading
+  double smallest = 0;    ///< m, smallest diameter of the grading
   double density = 2760;  ///< kg/m3
   double gravity = 9.81;  ///< m/s2
 
@@ -57,6 +64,7 @@ struct Effect {
   /// Experiments in which it changes anything; empty: all.
   std::vector<std::string_view> experiments;
   void (*apply)(std::span<const double> values, const EffectContext& context, Modifications& model);
+  bool measures = false;  ///< acts on what is analysed, not on the motion
 };
 
 /// All effects there are, in the order of the documentation.

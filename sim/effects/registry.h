@@ -16,5 +16,11 @@ Effect undamped_flight();
 Effect density_by_size();
 Effect missing_fines();
 Effect release_speed();
+Effect breakage();
+Effect vibration();
+Effect detection_limit();
+Effect image_blur();
+Effect image_shape_bias();
+Effect section_borders();
 
 }  // namespace scree

@@ -10,7 +10,8 @@ enum class RandomPurpose : std::uint64_t {
   positions = 2,
   base_layer = 3,
   measurement = 4,
-  design = 5
+  design = 5,
+  fragments = 6
 };
 
 /// Counter-based generator (SplitMix64 finaliser over key and counter; Steele, Lea & Flood, OOPSLA 2014).

@@ -36,6 +36,9 @@ RunOutcome run_drop_test(const Scenario& scenario, const DropTest& e, std::uint6
       throw std::runtime_error(
           "the rock went through the floor: raise material.effective_modulus_pa or lower "
           "experiment.height_m");
+    if (now.grains.size() > 1)
+      throw std::runtime_error(
+          "the rock broke and has no rebound: lower effects.breakage.fragility_kg_per_j");
     const Grain& rock = now.grains.front();
     const bool rises = rock.velocity.z() > 0;
     if (bounced && !rises) break;

@@ -17,7 +17,9 @@ const EffectUse* Scenario::effect(const Effect& wanted) const {
 
 EffectiveModel effective_model(const Scenario& scenario) {
   EffectiveModel model{{}, read_grading(scenario.grading_file), scenario.material};
-  const EffectContext context{.d50 = model.grading.diameter(0.5), .density = scenario.material.density};
+  const EffectContext context{.d50 = model.grading.diameter(0.5),
+                              .smallest = model.grading.min_diameter(),
+                              .density = scenario.material.density};
   model.changes = modifications(scenario.effects, context);
   model.material.normal_damping_ratio += model.changes.normal_damping_ratio;
   model.material.density_exponent = model.changes.density_exponent;

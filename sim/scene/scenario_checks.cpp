@@ -86,8 +86,11 @@ class Checks {
   }
 
   void effects() {
-    if (!s_.effects.empty() && s_.engine == EngineKind::impulse)
-      fail(&s_.effects.front().values.front(), "effects: engine impulse has none; take engine rrlinear");
+    const auto moves = std::find_if(s_.effects.begin(), s_.effects.end(),
+                                    [](const EffectUse& use) { return !use.effect->measures; });
+    if (moves != s_.effects.end() && s_.engine == EngineKind::impulse)
+      fail(&moves->values.front(),
+           "effects: engine impulse has none but those on measurement; take engine rrlinear");
     for (const EffectUse& use : s_.effects) {
       const auto& acts_in = use.effect->experiments;
       if (!acts_in.empty() && std::find(acts_in.begin(), acts_in.end(), experiment_type(s_)) == acts_in.end())

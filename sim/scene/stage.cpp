@@ -25,6 +25,8 @@ Stage::Stage(const Scenario& scenario, std::uint64_t seed, int threads, const Ru
   settings.material = model_.material;
   settings.contact_effects = model_.changes.contact;
   settings.flight_damping = model_.changes.flight_damping;
+  settings.vibration = model_.changes.vibration;
+  settings.breakage = model_.changes.breakage;
   if (scenario.engine == EngineKind::impulse) {
     settings.material.mu = scenario.bullet.value().friction;
     settings.material.mu_r = scenario.bullet.value().rolling;
@@ -98,6 +100,7 @@ void Stage::begin(const std::vector<NewSphere>& fixed, const std::vector<std::ve
       const double mass = sphere_mass(model_.material, s.diameter);
       outcome_.original.push_back({id++, s.position, Vec3::Zero(), s.diameter, mass, s.dump});
     }
+  world_->reserve_numbers(id);
   if (hooks_.begin) hooks_.begin(outcome_.original, outcome_.fixed);
 }
 
@@ -181,6 +184,9 @@ RunOutcome Stage::finish() {
   if (hooks_.frame) hooks_.frame(outcome_.final_state, world_->statistics().steps);
   outcome_.statistics = world_->statistics();
   outcome_.simulated_seconds = world_->time();
+  if (model_.changes.breakage.on())
+    note(fmt::format("seed {}: {} grains broke, fragments of fragments included", seed_,
+                     outcome_.statistics.broken_spheres));
   return std::move(outcome_);
 }
 

@@ -34,38 +34,85 @@ RockWorld::~RockWorld() {
     if (mesh) removeRigidBody(&mesh->body());
 }
 
+void RockWorld::add_sphere(const NewSphere& s, double mass, std::int64_t id) {
+  const double radius = 0.5 * s.diameter;
+  spheres_.place.push_back({s.position.x(), s.position.y(), s.position.z(), radius});
+  spheres_.velocity.push_back({s.velocity.x(), s.velocity.y(), s.velocity.z(), mass});
+  spheres_.spin.push_back({s.spin.x(), s.spin.y(), s.spin.z(), 0.4 * mass * radius * radius});
+  spheres_.id.push_back(id);
+  spheres_.dump.push_back(s.dump);
+  spheres_.lost.push_back(0);
+  spheres_.asleep.push_back(0);
+  fixed_.push_back(s.fixed ? 1 : 0);
+}
+
 void RockWorld::add_spheres(const std::vector<NewSphere>& spheres) {
   for (const NewSphere& s : spheres) {
-    const double radius = 0.5 * s.diameter;
-    const double mass = sphere_mass(settings_.material, s.diameter);
-    const std::int64_t id = spheres_.size();
-    spheres_.place.push_back({s.position.x(), s.position.y(), s.position.z(), radius});
-    spheres_.velocity.push_back({s.velocity.x(), s.velocity.y(), s.velocity.z(), mass});
-    spheres_.spin.push_back({s.spin.x(), s.spin.y(), s.spin.z(), 0.4 * mass * radius * radius});
-    spheres_.id.push_back(id);
-    spheres_.dump.push_back(s.dump);
-    spheres_.lost.push_back(0);
-    spheres_.asleep.push_back(0);
-    fixed_.push_back(s.fixed ? 1 : 0);
+    if (next_ >= reserved_) next_ = std::max(next_, next_fragment_);
+    add_sphere(s, sphere_mass(settings_.material, s.diameter), next_++);
   }
   spheres_.movable = static_cast<int>(std::count(fixed_.begin(), fixed_.end(), 0));
   if (bullet_moves_spheres()) make_bodies();
   scene_changed();
 }
 
+std::array<int, Breakage::kFragments> RockWorld::replace_by_fragments(int i) {
+  const Vec3 middle = spheres_.place[i].vec(), velocity = spheres_.velocity[i].vec(),
+             spin = spheres_.spin[i].vec();
+  const double radius = spheres_.place[i].w, mass = spheres_.velocity[i].w / Breakage::kFragments;
+  const auto places = fragment_places(static_cast<std::uint64_t>(spheres_.id[i]));
+  std::array<int, Breakage::kFragments> fragments{};
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Vec3 arm = radius * places[k];
+    NewSphere fragment;
+    fragment.position = middle + arm;
+    fragment.diameter = 2 * Breakage::kSizeAtFirst * radius;
+    fragment.dump = spheres_.dump[i];
+    fragment.velocity = velocity + spin.cross(arm);
+    fragment.spin = spin;
+    if (k > 0) {
+      fragments[k] = spheres_.size();
+      next_fragment_ = std::max({next_fragment_, next_, reserved_});
+      add_sphere(fragment, mass, next_fragment_++);
+      continue;
+    }
+    fragments[0] = i;
+    const double r = 0.5 * fragment.diameter;
+    spheres_.place[i] = {fragment.position.x(), fragment.position.y(), fragment.position.z(), r};
+    spheres_.velocity[i] = {fragment.velocity.x(), fragment.velocity.y(), fragment.velocity.z(), mass};
+    spheres_.spin[i].w = 0.4 * mass * r * r;
+    drop_body(spheres_.id[i]);
+  }
+  spheres_.movable += Breakage::kFragments - 1;
+  ++statistics_.broken_spheres;
+  return fragments;
+}
+
+void RockWorld::set_radius(int i, double radius) {
+  spheres_.place[i].w = radius;
+  spheres_.spin[i].w = 0.4 * spheres_.velocity[i].w * radius * radius;
+  drop_body(spheres_.id[i]);
+}
+
+void RockWorld::drop_body(std::int64_t number) {
+  const auto id = static_cast<std::size_t>(number);
+  if (id >= bodies_.size() || !bodies_[id]) return;
+  removeRigidBody(bodies_[id].get());
+  bodies_[id].reset();
+}
+
 void RockWorld::make_bodies() {
-  const std::size_t made = bodies_.size(), count = spheres_.place.size();
-  if (made == count) return;
-  bodies_.resize(count);
-  shapes_.resize(count);
-  std::vector<int> by_id(count - made, -1);  // Bullet's order does not depend on ours
+  std::int64_t count = 0;
+  for (const std::int64_t id : spheres_.id) count = std::max(count, id + 1);
+  bodies_.resize(static_cast<std::size_t>(count));
+  shapes_.resize(static_cast<std::size_t>(count));
+  std::vector<int> by_id(static_cast<std::size_t>(count), -1);  // Bullet's order does not depend on ours
   for (int i = 0; i < spheres_.size(); ++i)
-    if (static_cast<std::size_t>(spheres_.id[i]) >= made)
-      by_id[static_cast<std::size_t>(spheres_.id[i]) - made] = i;
-  for (const int i : by_id) {
-    if (spheres_.lost[i]) continue;
+    if (!spheres_.lost[i]) by_id[static_cast<std::size_t>(spheres_.id[i])] = i;
+  for (std::size_t id = 0; id < by_id.size(); ++id) {
+    const int i = by_id[id];
+    if (i < 0 || bodies_[id]) continue;
     const double mass = spheres_.velocity[i].w;
-    const auto id = static_cast<std::size_t>(spheres_.id[i]);
     shapes_[id] = std::make_unique<btSphereShape>(spheres_.place[i].w);
     const bool dynamic = bullet_moves_spheres() && !fixed_[i];
     btVector3 inertia(0, 0, 0);
@@ -190,11 +237,7 @@ void RockWorld::check_spheres(std::span<const int> spheres) {
     spheres_.lost[i] = 1;
     ++statistics_.lost_particles;
     statistics_.lost_mass += spheres_.velocity[i].w;
-    const auto id = static_cast<std::size_t>(spheres_.id[i]);
-    if (id < bodies_.size()) {
-      removeRigidBody(bodies_[id].get());
-      bodies_[id].reset();
-    }
+    drop_body(spheres_.id[i]);
     spheres_.velocity[i].set(Vec3::Zero());
     spheres_.spin[i].set(Vec3::Zero());
     sphere_lost(i);

@@ -11,6 +11,7 @@
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <span>
@@ -21,9 +22,11 @@
 #include "sim/contact/contact_effects.h"
 #include "sim/io/snapshot.h"
 #include "sim/material/material.h"
+#include "sim/world/breakage.h"
 #include "sim/world/energy_watch.h"
 #include "sim/world/mesh_body.h"
 #include "sim/world/spheres.h"
+#include "sim/world/vibration.h"
 
 namespace scree {
 
@@ -32,6 +35,8 @@ struct WorldSettings {
   ContactEffects contact_effects;  ///< rrlinear
   double flight_damping = 1;       ///< share of local damping that acts in flight (rrlinear)
   Vec3 gravity{0, 0, -9.81};       ///< m/s2
+  Vibration vibration;             ///< of gravity (rrlinear)
+  Breakage breakage;               ///< of spheres (rrlinear)
   Vec3 domain_low = Vec3::Constant(-1e6), domain_high = Vec3::Constant(1e6);  ///< m; a sphere outside is lost
   double time_step_safety = 0.8;   ///< share of the stable step (rrlinear)
   double fixed_time_step = 0;      ///< s; above 0 it is used instead (rrlinear; for tests)
@@ -54,6 +59,7 @@ struct WorldStatistics {
   std::int64_t squeezed_into_walls = 0;  ///< mesh contacts that began inside a closed mesh
   std::int64_t crowded_contacts = 0;     ///< mesh contacts left out because a sphere had too many
   std::int64_t asleep = 0;               ///< spheres asleep now
+  std::int64_t broken_spheres = 0;       ///< spheres that fragments took the place of
 };
 
 /// Energies of the scene (J).
@@ -77,8 +83,10 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   RockWorld(const RockWorld&) = delete;
   RockWorld& operator=(const RockWorld&) = delete;
 
-  /// Adds spheres; ids are given in order, from the number of spheres added so far.
+  /// Adds spheres; ids are given in order, from 0 on.
   void add_spheres(const std::vector<NewSphere>& spheres);
+  /// Keeps the ids below `count` for add_spheres(); fragments get those from there on.
+  void reserve_numbers(std::int64_t count) { reserved_ = count; }
   /// Adds a mesh; returns its index, which stays valid.
   int add_mesh(TriangleMesh mesh, const Surface& surface, Motion motion);
   const MeshBody& mesh(int index) const { return *meshes_[index]; }
@@ -118,6 +126,11 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   /// Counts and takes out those of some movable spheres that are beyond the domain; throws BlowUp if one is
   /// not finite or too fast.
   void check_spheres(std::span<const int> spheres);
+  /// Puts fragments into the place of a movable sphere (its index); those but the first are the last spheres
+  /// then. Returns their indices. The engine has to know: scene_changed().
+  std::array<int, Breakage::kFragments> replace_by_fragments(int sphere);
+  /// Gives a sphere another radius (m); its mass stays.
+  void set_radius(int sphere, double radius);
   /// Makes the Bullet bodies that are not there yet. The explicit engine needs none to step.
   void make_bodies();
   virtual void sphere_pushed(int) {}
@@ -131,6 +144,13 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   std::vector<std::unique_ptr<MeshBody>> meshes_;       // null: removed
   std::vector<std::unique_ptr<btRigidBody>> bodies_;    // by id; those made so far
   std::vector<std::unique_ptr<btSphereShape>> shapes_;  // by id
+
+ private:
+  void add_sphere(const NewSphere& sphere, double mass, std::int64_t id);
+
+  void drop_body(std::int64_t id);
+
+  std::int64_t next_ = 0, reserved_ = 0, next_fragment_ = 0;  // ids
 };
 
 /// Makes the world of an engine.

@@ -17,8 +17,9 @@ constexpr double kToolSkin =
 constexpr double kToolTravel = 0.25;  // of the smallest radius: most that a tool may travel in one step
 constexpr double kNearGap =
     0.05;  // of the smaller radius: gap below which a contact is expected (stable step)
-constexpr double kMostTravel = 0.2;    // of the radius: most that a sphere may travel in one step
-constexpr double kLargestStep = 0.05;  // s; for scenes with nothing stiff in them
+constexpr double kMostTravel = 0.2;          // of the radius: most that a sphere may travel in one step
+constexpr double kStepsBetweenGrowths = 10;  // of the smallest sphere in flight; fragments part meanwhile
+constexpr double kLargestStep = 0.05;        // s; for scenes with nothing stiff in them
 
 }  // namespace
 
@@ -26,7 +27,7 @@ RrlinearWorld::RrlinearWorld(const WorldSettings& settings)
     : RockWorld(settings),
       law_(settings.material, settings.contact_effects),
       team_(settings.threads),
-      sleep_(settings.sleep, settings.wake_tolerance) {
+      sleep_(settings.sleep && !settings.vibration.on(), settings.wake_tolerance) {
   pairs_.set_team(&team_);
 }
 
@@ -76,11 +77,15 @@ void RrlinearWorld::sphere_lost(int index) {
 void RrlinearWorld::advance_to(double end) {
   if (changed_) prepare();
   while (time_ < end) {
-    if (pairs_.listings() > kListingsBetweenSorts * spheres_.movable) prepare();
+    if (changed_ || pairs_.listings() > kListingsBetweenSorts * spheres_.movable) prepare();
     if (--steps_to_check_ < 0) {
       steps_to_check_ = kStepsBetweenChecks - 1;
       check_spheres(sleep_.awake());
       if (repair_due_) repair();
+      if (!growing_.empty() && time_ >= next_growth_) {
+        grow_fragments();
+        prepare();
+      }
       if (--checks_to_energy_ <= 0) check_energy();
       sleep_.look(spheres_, sum_, pairs_, watched_, law_, time_, settings_.gravity);
       for (const int i : sleep_.fallen_asleep()) {
@@ -95,6 +100,7 @@ void RrlinearWorld::advance_to(double end) {
     step(last ? left : dt_);
     if (last) time_ = end;
   }
+  if (changed_) prepare();  // a sphere broke in the last step
 }
 
 void RrlinearWorld::prepare() {
@@ -118,6 +124,17 @@ void RrlinearWorld::prepare() {
                                    std::sqrt(free_step2(radius, spheres_.velocity[i].w, spheres_.spin[i].w)));
   }
   sum_.assign(n, {});
+  if (!growing_.empty()) {
+    std::vector<int> place_of(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) place_of[order[k]] = static_cast<int>(k);
+    for (GrowingSphere& g : growing_) g.sphere = place_of[g.sphere];
+  }
+  if (settings_.breakage.on()) {
+    bears_.resize(static_cast<std::size_t>(n));
+    for (int i = 0; i < n; ++i)
+      bears_[i] = spheres_.velocity[i].w * settings_.breakage.strength(2 * spheres_.place[i].w);
+    for (const GrowingSphere& g : growing_) bears_[g.sphere] = HUGE_VAL;
+  }
   friction_.clear();
   if (!settings_.contact_effects.none()) {
     for (int i = 0; i < spheres_.size(); ++i)
@@ -142,6 +159,7 @@ void RrlinearWorld::find_watched() {
   watched_.assign(spheres_.size(), 0);
   if (!sleep_.on()) return;
   for (const int i : facets_.near_tools(meshes_, time_)) watched_[i] = 1;
+  for (const GrowingSphere& g : growing_) watched_[g.sphere] = 1;
 }
 
 void RrlinearWorld::repair() {
@@ -278,8 +296,14 @@ void RrlinearWorld::step(double dt) {
   const double alpha = settings_.material.local_damping,
                in_flight =
                    settings_.material.damping_reach == DampingReach::always ? settings_.flight_damping : 0.0;
-  const LeapfrogView view{spheres_, pairs_, sum_.data(), settings_.gravity, alpha, in_flight * alpha, dt};
-  for_blocks([&](BlockWork& work) { leapfrog(view, work); });
+  const Vec3 gravity =
+      settings_.vibration.on() ? settings_.vibration.factor(time_) * settings_.gravity : settings_.gravity;
+  const LeapfrogView view{spheres_, pairs_, sum_.data(), gravity, alpha, in_flight * alpha, dt};
+  if (settings_.breakage.on()) for_blocks([&](BlockWork& work) { find_broken(work); });
+  for_blocks([&](BlockWork& work) {
+    leapfrog(view, work);
+    if (settings_.vibration.on()) supply_of_vibration(work, dt);
+  });
   disturbed_.clear();
   for (BlockWork& work : blocks_) {
     repair_due_ = repair_due_ || work.left_ball;
@@ -294,9 +318,73 @@ void RrlinearWorld::step(double dt) {
   last_dt_ = dt;
   move_tools();
   if (repair_due_) repair();
+  if (settings_.breakage.on()) break_spheres();
   ++statistics_.steps;
   statistics_.time_step_max = std::max(statistics_.time_step_max, dt);
   if (statistics_.time_step_min == 0 || dt_ < statistics_.time_step_min) statistics_.time_step_min = dt_;
+}
+
+// What a swing of gravity does to the spheres of a block beyond its mean (J): it may give them energy.
+void RrlinearWorld::supply_of_vibration(BlockWork& work, double dt) const {
+  const Vec3 more = (settings_.vibration.factor(time_) - 1) * settings_.gravity;
+  for (const int i : work.awake) {
+    const Quad& v = spheres_.velocity[i];
+    work.supplied += std::max(0.0, v.w * more.dot(v.vec()) * dt);
+  }
+}
+
+// Spheres in which a contact stores more energy than they can bear. Two spheres of one contact are springs in
+// series, equally stiff, and bear one half each.
+void RrlinearWorld::find_broken(BlockWork& work) const {
+  work.broken.clear();
+  for (const int i : work.awake) {
+    double most = 0;
+    for (const Neighbour& n : pairs_.neighbours(i)) {
+      if (!n.touching()) continue;
+      const Quad &a = spheres_.place[i], &b = spheres_.place[n.sphere];
+      const double overlap = a.w + b.w - (b.vec() - a.vec()).norm();
+      if (overlap > 0) most = std::max(most, 0.25 * ball_ball(law_, a.w, b.w).kn * overlap * overlap);
+    }
+    for (int k = 0; k < facets_.count(i); ++k) {
+      const double overlap = facets_.contact(i, k).overlap;
+      most = std::max(most, 0.5 * ball_facet(law_, spheres_.place[i].w).kn * overlap * overlap);
+    }
+    if (most > bears_[i]) work.broken.push_back(i);
+  }
+}
+
+// Fragments in the place of the spheres that were found broken. What lay on these is woken; the step goes on
+// from new lists.
+void RrlinearWorld::break_spheres() {
+  std::vector<int> broken, left_alone;
+  for (BlockWork& work : blocks_) {
+    broken.insert(broken.end(), work.broken.begin(), work.broken.end());
+    work.broken.clear();
+  }
+  if (broken.empty()) return;
+  for (const int i : broken)
+    for (const Neighbour& n : pairs_.neighbours(i)) {
+      if (!n.touching()) continue;
+      pairs_.memory(n) = {};  // the contact of another piece begins anew
+      if (n.sphere < spheres_.movable) left_alone.push_back(n.sphere);
+    }
+  wake(left_alone);
+  for (const int i : broken) {
+    if (spheres_.lost[i]) continue;
+    const double radius = Breakage::kSize * spheres_.place[i].w;
+    for (const int fragment : replace_by_fragments(i)) growing_.push_back({fragment, radius});
+  }
+  next_growth_ = time_ + kStepsBetweenGrowths * longest_step_;
+  changed_ = true;
+}
+
+void RrlinearWorld::grow_fragments() {
+  next_growth_ = time_ + kStepsBetweenGrowths * longest_step_;
+  std::erase_if(growing_, [&](const GrowingSphere& g) {
+    const double grown = std::min(Breakage::kGrowth * spheres_.place[g.sphere].w, g.radius);
+    if (!spheres_.lost[g.sphere]) set_radius(g.sphere, grown);
+    return spheres_.lost[g.sphere] || grown == g.radius;
+  });
 }
 
 // Square of the stable step of a sphere in flight (s2): it may meet one other at least, as stiff as a partner
@@ -350,7 +438,8 @@ double RrlinearWorld::stable_step() {
     step2 = std::min(step2, work.step2);
     travel = std::min(travel, work.travel);
   }
-  return std::min({settings_.time_step_safety * std::sqrt(step2), travel, longest_step_});
+  const double swing = settings_.vibration.on() ? settings_.vibration.longest_step() : kLargestStep;
+  return std::min({settings_.time_step_safety * std::sqrt(step2), travel, longest_step_, swing});
 }
 
 // Of gravity, and of the pull of its contacts with meshes and sleepers, J.

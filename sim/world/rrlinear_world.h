@@ -53,6 +53,10 @@ class RrlinearWorld final : public RockWorld {
   void move_tools();
   void repair();
   void wake(std::vector<int>& disturbed);
+  void find_broken(BlockWork& work) const;
+  void break_spheres();
+  void grow_fragments();
+  void supply_of_vibration(BlockWork& work, double dt) const;
   double free_step2(double radius, double mass, double inertia) const;
   double own_step2(int i) const;
   double potential_energy(int i) const;
@@ -87,7 +91,10 @@ class RrlinearWorld final : public RockWorld {
   std::vector<BlockWork> blocks_;      // those with anything to do
   std::vector<int> block_at_;          // by block: its place in blocks_, or -1
   std::vector<int> disturbed_, near_rim_;
-  bool blocks_due_ = true;  // who is awake has changed
+  std::vector<GrowingSphere> growing_;
+  std::vector<double> bears_;  // by sphere: energy of a contact that does not break it, J
+  double next_growth_ = 0;     // of fragments, s
+  bool blocks_due_ = true;     // who is awake has changed
 };
 
 }  // namespace scree

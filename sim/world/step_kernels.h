@@ -41,6 +41,7 @@ struct BlockWork {
   std::vector<int> disturbed;    ///< sleepers that one of its contacts wakes
   double overlap_ratio = 0;      ///< largest overlap over the smaller radius
   double supplied = 0;           ///< work of tools, and energy that contacts with meshes brought (J)
+  std::vector<int> broken;       ///< awake spheres that break
   AwakeEnergy energy;            ///< of its awake spheres, when asked for
   bool left_ball = false;        ///< a sphere has left its ball (PairList)
   std::vector<int> near_rim;     ///< those that have, or are near its rim

@@ -100,6 +100,7 @@ TEST_F(Cli, BadInputIsOneLineAndExitCodeTwo) {
       {"validate nowhere.yaml", "nowhere.yaml"},
       {"run nowhere.yaml --seeds 0", "--seeds"},
       {"run nowhere.yaml --threads x", "--threads"},
+      {"effects magic", "no such effect; there are cohesion"},
   };
   for (const Case& c : cases) {
     const Called result = call(c.arguments);
@@ -115,12 +116,44 @@ TEST_F(Cli, BadInputIsOneLineAndExitCodeTwo) {
     EXPECT_EQ(other.code, 2) << key;
     EXPECT_EQ(std::count(other.text.begin(), other.text.end(), '\n'), 1) << other.text;
   }
+  const Called breaks =
+      call("run " + small + " --set effects.breakage.fragility_kg_per_j=1 --out " + (folder / "x").string());
+  EXPECT_EQ(breaks.code, 2);
+  EXPECT_NE(breaks.text.find("add --set output.trajectory=false"), std::string::npos) << breaks.text;
+  EXPECT_EQ(std::count(breaks.text.begin(), breaks.text.end(), '\n'), 1) << breaks.text;
   const Called set =
       call("run " + small + " --set material.mux=1 --set material.mu=-1 --out " + (folder / "x").string());
   EXPECT_EQ(set.code, 2);
   EXPECT_NE(set.text.find("--set material.mux=1"), std::string::npos) << set.text;
   EXPECT_NE(set.text.find("--set material.mu=-1"), std::string::npos) << set.text;
   EXPECT_FALSE(fs::exists(folder / "x")) << "nothing is written before the input is good";
+}
+
+// Effects on measurement change the gradings of the same pile, and nothing when absent.
+TEST_F(Cli, EffectsOnMeasurementChangeGradingsAlone) {
+  const auto run = [&](const std::string& name, const std::string& set) {
+    const fs::path out = folder / name;
+    const Called called = call("run " + small + " --summary-only --set output.trajectory=false" + set +
+                               " --out " + out.string());
+    EXPECT_EQ(called.code, 0) << called.text;
+    return std::pair(slurp(out / "sections.csv"), nlohmann::json::parse(slurp(out / "summary.json")));
+  };
+  const auto truth = run("truth", "");
+  EXPECT_EQ(run("absent", " --set effects.image_blur.width=0 --set effects.section_borders.shift=0").first,
+            truth.first);
+  const auto limited = run("limited", " --set effects.detection_limit.ratio=0.5");
+  EXPECT_NE(limited.first, truth.first);
+  for (std::size_t k = 0; k < truth.second["sections"].size(); ++k)
+    EXPECT_NEAR(limited.second["sections"][k]["mass_t"]["mean"].get<double>(),
+                truth.second["sections"][k]["mass_t"]["mean"].get<double>(), 1e-9);
+}
+
+TEST_F(Cli, EffectsAreToldInWords) {
+  const Called all = call("effects"), one = call("effects detection_limit");
+  EXPECT_EQ(all.code, 0);
+  EXPECT_NE(all.text.find("small grains that images miss (measurement)"), std::string::npos) << all.text;
+  EXPECT_EQ(one.code, 0);
+  EXPECT_NE(one.text.find("| `ratio` |"), std::string::npos) << one.text;
 }
 
 TEST_F(Cli, InterruptKeepsWhatIsDone) {

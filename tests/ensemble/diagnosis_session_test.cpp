@@ -188,6 +188,16 @@ TEST_F(Session, ModelFilesAreChecked) {
               HasSubstr("no file"));
 }
 
+TEST(Models, ThoseOfTheProjectLoad) {
+  int files = 0;
+  for (const auto& item : fs::directory_iterator(fs::path(SCREE_SOURCE_DIR) / "scenarios" / "models")) {
+    const DiagnosisModelResult loaded = load_model(item.path(), kAssets);
+    EXPECT_TRUE(loaded.errors.empty()) << loaded.errors.front().text();
+    ++files;
+  }
+  EXPECT_GE(files, 2);
+}
+
 TEST(ScenarioPatch, NestsKeysAndNamesTheFileFromWhereItLies) {
   EXPECT_EQ(scenario_patch("/data/scenarios/a.yaml", "/data/runs/x",
                            {"material.mu=0.3", "effects.cohesion.bond_number=1", "material.mu_r=0.2"},

@@ -2,9 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <set>
 
 #include "scree_version.h"
+#include "sim/effects/describe.h"
 #include "sim/scene/run.h"
 #include "tests/scene/scenario_fixture.h"
 
@@ -47,7 +49,8 @@ TEST(EffectList, AbsentMeansAbsent) {
            m.normal_damping_ratio != none.normal_damping_ratio || m.ground_mu != none.ground_mu ||
            m.ground_mu_r != none.ground_mu_r || m.tool_surface_energy != none.tool_surface_energy ||
            m.density_exponent != none.density_exponent || m.fines_share != none.fines_share ||
-           m.release_speed != none.release_speed;
+           m.release_speed != none.release_speed || m.vibration.on() || m.breakage.on() ||
+           !m.measurement.exact() || m.measurement.border_shift != 0;
   };
   for (const Effect& effect : all_effects()) {
     EffectUse use{&effect, {}};
@@ -56,6 +59,17 @@ TEST(EffectList, AbsentMeansAbsent) {
     use.values.front() = effect.absent;
     EXPECT_FALSE(differs(modifications(std::span(&use, 1), {}))) << effect.name;
   }
+}
+
+TEST(EffectList, IsTheDocument) {
+  std::ifstream file(std::filesystem::path(SCREE_SOURCE_DIR) / "docs/effects.md");
+  const std::string there{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_TRUE(there == effects_document())
+      << "docs/effects.md is not what the effects say; renew it: scree effects --document > docs/effects.md";
+  for (const Effect& effect : all_effects())
+    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(SCREE_SOURCE_DIR) / "docs/pictures/effects" /
+                                        (std::string(effect.name) + ".svg")))
+        << effect.name << ": docs/pictures/effects/make.sh " << effect.name;
 }
 
 TEST(ScenarioEffects, AreReadWithTheirDefaults) {
@@ -100,6 +114,14 @@ TEST(ScenarioEffects, FaultsAreSaidAtTheirPlace) {
               ElementsAre(HasSubstr("effects.cohesion: a map of keys is expected, found '1'")));
   EXPECT_THAT(folder.messages(std::string(kDump) + "effects: [cohesion]\n"),
               ElementsAre(HasSubstr("effects: a map of keys is expected, found a list")));
+  EXPECT_THAT(
+      folder.messages(std::string(kDump) + "effects: {section_borders: {shift: 1}}\n"),
+      ElementsAre(HasSubstr("effects.section_borders.shift: 1 is out of range; allowed -0.9 to 0.9")));
+  EXPECT_THAT(folder.messages(std::string(kDump) + "effects: {breakage: {fragility: 1}}\n"),
+              ElementsAre(HasSubstr("unknown key 'fragility' in effects.breakage")));
+  EXPECT_THAT(
+      folder.messages(std::string(kDump) + "effects: {vibration: {frequency_hz: 0}}\n"),
+      ElementsAre(HasSubstr("effects.vibration.frequency_hz: 0 is out of range; allowed 0.1 to 200 Hz")));
   EXPECT_THAT(
       folder.messages(
           std::string(kDump) +
@@ -148,19 +170,47 @@ bool same(const std::vector<Grain>& a, const std::vector<Grain>& b) {
   });
 }
 
+// Fragments take numbers that no later load gets, and no grain is lost or made.
+TEST(Breakage, LoadsThatComeLaterKeepTheirNumbers) {
+  const std::filesystem::path source = SCREE_SOURCE_DIR;
+  auto loaded = load_scenario(source / "scenarios/thesis/lab_segregation.yaml",
+                              {"grading=Lab0_16mm", "experiment.buckets=2", "experiment.mass_kg=4",
+                               "stop.max_time_s=1", "compare=[]", "effects.breakage.fragility_kg_per_j=1"},
+                              source / "assets");
+  for (const auto& error : loaded.errors) ADD_FAILURE() << error.text();
+  const RunOutcome outcome = run_scenario(loaded.scenario, 10001, 1, {});
+  EXPECT_GT(outcome.statistics.broken_spheres, 0);
+  double put_in = 0, there = outcome.statistics.lost_mass;
+  std::set<std::int64_t> ids;
+  for (const Grain& g : outcome.original) put_in += g.mass;
+  for (const Grain& g : outcome.final_state.grains) {
+    there += g.mass;
+    EXPECT_TRUE(ids.insert(g.id).second) << g.id;
+    const auto id = static_cast<std::size_t>(g.id);
+    EXPECT_TRUE(id >= outcome.original.size() || g.dump == outcome.original[id].dump) << g.id;
+  }
+  EXPECT_NEAR(there, put_in, 1e-9 * put_in);
+}
+
 // At the amplitude that means absent the numbers are those of the base model. The vector kernel for effects
 // computes the same as the plain one when its factors are 1: an exponent of 1e-300 switches it on.
 TEST(ScenarioEffects, BaseModelIsUntouched) {
   const auto base = run({});
   EXPECT_TRUE(same(base, run({"effects.cohesion.bond_number=0"})));
+  EXPECT_TRUE(same(base, run({"effects.vibration.acceleration_g=0", "effects.breakage.fragility_kg_per_j=0",
+                              "effects.image_blur.width=0"})));
+  EXPECT_TRUE(same(base, run({"effects.image_blur.width=0.5", "effects.detection_limit.ratio=0.5",
+                              "effects.section_borders.shift=0.3"})));  // act on what is analysed
   EXPECT_TRUE(same(base, run({"effects.friction_by_size.exponent=1e-300"})));
   EXPECT_FALSE(same(base, run({"effects.friction_by_size.exponent=0.3"})));
 }
 
 TEST(ScenarioEffects, NumbersDoNotDependOnThreads) {
   const std::vector<std::string> effects{
-      "effects.cohesion.bond_number=0.5", "effects.twisting.mu_t=0.2", "effects.weakening.share=0.3",
-      "effects.rolling_by_size.exponent=0.4", "effects.sticky_tools.bond_number=0.5"};
+      "effects.cohesion.bond_number=0.5",     "effects.twisting.mu_t=0.2",
+      "effects.weakening.share=0.3",          "effects.rolling_by_size.exponent=0.4",
+      "effects.sticky_tools.bond_number=0.5", "effects.breakage.fragility_kg_per_j=1",
+      "effects.vibration.acceleration_g=0.3"};
   const auto one = run(effects, 1);
   EXPECT_TRUE(same(one, run(effects, 2)));
   EXPECT_TRUE(same(one, run(effects, 4)));

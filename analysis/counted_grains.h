@@ -1,0 +1,20 @@
+#pragma once
+// Grains as a measurement counts them: the one place where effects on measurement change diameters.
+#include <vector>
+
+#include "sim/effects/measurement.h"
+#include "sim/io/snapshot.h"
+
+namespace scree {
+
+/// Diameters (m) and their masses (kg), of the same length.
+struct CountedGrains {
+  std::vector<double> diameters, masses;
+};
+
+/// What is counted of these grains: first the share that is seen, by the true diameter; then the biased
+/// diameter; then its spread. The masses add up to those of the grains: a part of a pile is weighed, or its
+/// volume surveyed, and its grading is that of what is seen.
+CountedGrains count_grains(const std::vector<const Grain*>& grains, const Measurement& measured);
+
+}  // namespace scree

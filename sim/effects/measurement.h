@@ -1,0 +1,22 @@
+#pragma once
+// How a finished pile is measured, where that differs from the truth (analysis/counted_grains.h). With the
+// defaults grains are counted as they are.
+
+namespace scree {
+
+struct Measurement {
+  /// Of the mass of grains of diameter d the share 1 / (1 + (limit / d)^steepness) is seen; 0: all.
+  double detection_limit = 0;      ///< m
+  double detection_steepness = 6;  ///< the higher, the sharper
+  double blur = 0;                 ///< standard deviation of the error of ln d
+  /// A grain is seen with the diameter d (d / reference_diameter)^bias_exponent.
+  double bias_exponent = 0;
+  double reference_diameter = 1;  ///< m
+  /// Borders between sections, rings and cells lie this share of a section's length too far down.
+  double border_shift = 0;
+
+  /// Diameters and masses are counted as they are.
+  bool exact() const { return detection_limit == 0 && blur == 0 && bias_exponent == 0; }
+};
+
+}  // namespace scree

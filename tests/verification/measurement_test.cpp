@@ -1,0 +1,170 @@
+// Each effect on measurement against a formula, on rock whose grading is one.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analysis/counted_grains.h"
+#include "analysis/half_cone.h"
+#include "analysis/heap_shape.h"
+#include "analysis/lateral.h"
+#include "sim/effects/effect.h"
+
+namespace scree {
+namespace {
+
+constexpr double kD50 = 0.2;  // m
+
+Measurement measured_with(const std::string& name, std::vector<double> values) {
+  const EffectUse use{find_effect(name), std::move(values)};
+  return modifications(std::span(&use, 1), {.d50 = kD50}).measurement;
+}
+
+// 4,000 grains of 1 kg whose ln d has these quantiles.
+template <typename Quantile>
+std::vector<Grain> rock(Quantile ln_d, double z = 1) {
+  std::vector<Grain> grains(4000);
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    grains[k].id = static_cast<std::int64_t>(k);
+    grains[k].diameter = std::exp(ln_d((static_cast<double>(k) + 0.5) / static_cast<double>(grains.size())));
+    grains[k].mass = 1;
+    grains[k].position = Vec3(0, 0, z);
+    grains[k].dump = 1;
+  }
+  return grains;
+}
+
+// Evenly in ln d between D50 / spread and D50 spread.
+std::vector<Grain> even_rock(double spread, double z = 1) {
+  return rock([&](double p) { return std::log(kD50) + (2 * p - 1) * std::log(spread); }, z);
+}
+
+// Normal in ln d.
+std::vector<Grain> lognormal_rock(double median, double deviation, double z = 1) {
+  return rock(
+      [&](double p) {
+        double low = -8, high = 8;
+        for (int k = 0; k < 60; ++k) {
+          const double x = 0.5 * (low + high);
+          (0.5 * std::erfc(-x / std::sqrt(2)) < p ? low : high) = x;
+        }
+        return std::log(median) + deviation * low;
+      },
+      z);
+}
+
+// The section of all rock of a slope 2 m high.
+Section whole(const std::vector<Grain>& pile, const std::vector<Grain>& original,
+              const Measurement& measured) {
+  return analyse_sections(pile, original, 2, 1, measured).sections.front();
+}
+
+// Cut off sharply at L, rock even in ln d up to its largest diameter has D_p = L (largest / L)^p, and all of
+// its weight.
+TEST(DetectionLimit, SharpLimitCutsTheCurve) {
+  const double spread = 5, limit = 0.4 * kD50, largest = spread * kD50;
+  const auto grains = even_rock(spread);
+  const Section seen = whole(grains, grains, measured_with("detection_limit", {0.4, 50}));
+  EXPECT_NEAR(seen.d10 / (limit * std::pow(largest / limit, 0.1)), 1, 0.01);
+  EXPECT_NEAR(seen.d50 / std::sqrt(limit * largest), 1, 0.01);
+  EXPECT_NEAR(seen.mass, 4000, 1e-6);
+  EXPECT_NEAR(seen.chi, 0, 1e-12);  // the rock as dumped is measured likewise
+}
+
+// Of two equal masses at the limit and far above it one half and all is seen: shares of 1/3 and 2/3.
+TEST(DetectionLimit, HalfIsSeenAtTheLimit) {
+  std::vector<Grain> two(2);
+  two[0].diameter = 0.3 * kD50, two[1].diameter = 300 * kD50;
+  two[0].mass = two[1].mass = 3;
+  const CountedGrains seen = count_grains({&two[0], &two[1]}, measured_with("detection_limit", {0.3, 6}));
+  EXPECT_NEAR(seen.masses[0], 2, 1e-9);
+  EXPECT_NEAR(seen.masses[1], 4, 1e-9);
+}
+
+// Normal in ln d with deviation s, blurred by w: deviation sqrt(s^2 + w^2), D50 stays. The coarsest quartile
+// of a normal distribution lies 1.2711 deviations above its mean, so chi of a part that is k times coarser is
+// ln k / (1.2711 sqrt(s^2 + w^2)).
+TEST(ImageBlur, WidensTheCurveAndLowersChi) {
+  const double s = 0.6, w = 0.5, k = 1.3, both = std::hypot(s, w);
+  const auto original = lognormal_rock(kD50, s), part = lognormal_rock(k * kD50, s);
+  for (const bool blurred : {false, true}) {
+    const double deviation = blurred ? both : s;
+    const Section seen = whole(part, original, blurred ? measured_with("image_blur", {w}) : Measurement{});
+    EXPECT_NEAR(seen.d50, k * kD50, 0.01 * k * kD50);
+    EXPECT_NEAR(std::log(seen.d80 / seen.d50), 0.8416 * deviation, 0.02 * deviation);
+    EXPECT_NEAR(seen.chi, std::log(k) / (1.2711 * deviation), 0.01);
+  }
+}
+
+// d (d / D50)^b: relative diameters are raised to 1 + b, chi stays.
+TEST(ImageShapeBias, RelativeDiametersAreRaisedToAPower) {
+  const double b = 0.3, k = 1.4;
+  const auto original = lognormal_rock(kD50, 0.5), part = lognormal_rock(k * kD50, 0.5);
+  const Section truth = whole(part, original, {}),
+                seen = whole(part, original, measured_with("image_shape_bias", {b}));
+  EXPECT_NEAR(seen.d50_rel, std::pow(truth.d50_rel, 1 + b), 1e-9);
+  EXPECT_NEAR(seen.d80, truth.d80 * std::pow(truth.d80 / kD50, b), 1e-9);
+  EXPECT_NEAR(seen.chi, truth.chi, 1e-12);
+}
+
+// A slope with the same mass everywhere: of n sections the first has (1 + s) / n, the last (1 - s) / n.
+TEST(SectionBorders, FirstGrowsAndLastShrinks) {
+  const double height = 10;
+  auto pile = lognormal_rock(kD50, 0.5);
+  for (std::size_t k = 0; k < pile.size(); ++k)
+    pile[k].position.z() = height * (1 - (static_cast<double>(k) + 0.5) / static_cast<double>(pile.size()));
+  for (const double s : {-0.3, 0.25}) {
+    const auto sections =
+        analyse_sections(pile, pile, height, 4, measured_with("section_borders", {s})).sections;
+    EXPECT_NEAR(sections[0].mass, 1000 * (1 + s), 1);
+    EXPECT_NEAR(sections[1].mass, 1000, 1);
+    EXPECT_NEAR(sections[3].mass, 1000 * (1 - s), 1);
+  }
+}
+
+// Rings of a disc with the same mass everywhere: borders at (1 + s) / 3 and (2 + s) / 3 of the radius, so
+// shares of ((1 + s) / 3)^2 and 1 - ((2 + s) / 3)^2.
+TEST(SectionBorders, RingsMoveOutwards) {
+  const double radius = 3, s = 0.4;
+  auto heap = lognormal_rock(kD50, 0.5);
+  for (std::size_t k = 0; k < heap.size(); ++k) {
+    const double part = (static_cast<double>(k) + 0.5) / static_cast<double>(heap.size());
+    heap[k].position = Vec3(radius * std::sqrt(part), 0, 0.1);
+  }
+  ReposeAngle read;
+  read.radius = radius, read.height = 1, read.surface_step = 1, read.surface = {1, 1, 1, 1};
+  const HeapShape shape = measure_heap_shape(heap, heap, read, measured_with("section_borders", {s}));
+  EXPECT_NEAR(shape.mass_share[0], std::pow((1 + s) / 3, 2), 1e-3);
+  EXPECT_NEAR(shape.mass_share[2], 1 - std::pow((2 + s) / 3, 2), 1e-3);
+}
+
+// In a half cone a border further down the flank lies lower and further out.
+TEST(SectionBorders, CellsOfAHalfConeMoveDown) {
+  constexpr double step = 0.012;
+  std::vector<Grain> heap;
+  for (double x = step / 2; x < 0.6; x += step)
+    for (double y = -0.6; y < 0.6; y += step)
+      for (double z = step / 2; z < 0.3; z += step) {
+        if (z / 0.3 + std::hypot(x, y) / 0.6 > 1) continue;
+        Grain grain;
+        grain.position = Vec3(x, y, z), grain.diameter = 0.015, grain.mass = 1;
+        heap.push_back(grain);
+      }
+  const auto mass_of_top = [&](double shift) {
+    return analyse_half_cone(heap, heap, measured_with("section_borders", {shift})).surface.sections[0].mass;
+  };
+  // The top above (2 - s) / 3 of the height holds ((1 + s) / 3)^3 of a cone.
+  EXPECT_NEAR(mass_of_top(0.5) / static_cast<double>(heap.size()), 0.125, 0.03);
+  EXPECT_LT(mass_of_top(-0.3), mass_of_top(0.3));
+}
+
+// Strips across the slope lie in the same sections.
+TEST(SectionBorders, StripsFollowTheSections) {
+  auto pile = lognormal_rock(kD50, 0.5);
+  for (std::size_t k = 0; k < pile.size(); ++k)
+    pile[k].position = Vec3(0, 0, 10 * (1 - (static_cast<double>(k) + 0.5) / 4000));
+  const Lateral lateral = analyse_lateral(pile, pile, 10, 4, 1, 4, measured_with("section_borders", {0.25}));
+  EXPECT_NEAR(lateral.sections[0].mass[0], 1250, 1);
+}
+
+}  // namespace
+}  // namespace scree
