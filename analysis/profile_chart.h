@@ -1,5 +1,5 @@
 #pragma once
-// A chart of a number along a slope or over a parameter, of several runs and printed values together.
+// A chart of a number along a slope, of several runs and printed values together.
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -11,12 +11,12 @@ namespace scree {
 struct ChartSeries {
   enum class Kind { ours, pfc3d, measured };
   struct Point {
-    double x = 0, y = 0;
+    double x = 0, y = 0;                                    ///< x: 0 crest to 1 toe
     double std = std::numeric_limits<double>::quiet_NaN();  ///< none: no bar
   };
   std::string name;
   Kind kind = Kind::ours;  ///< ours: dots and a line; pfc3d: squares; measured: triangles
-  int colour = 0;          ///< index; series of one case share it
+  int colour = 0;          ///< index; series of one case share it; a chart of one case leaves its name out
   std::vector<Point> points;
 };
 

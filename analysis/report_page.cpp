@@ -35,7 +35,8 @@ table { border-collapse: collapse; font-size: .88rem; font-variant-numeric: tabu
 th, td { padding: .35rem .55rem; text-align: right; border-bottom: 1px solid var(--line); vertical-align: top; }
 th { font-weight: 600; color: var(--soft); vertical-align: bottom; }
 th.word, td.word { text-align: left; }
-td small { color: var(--soft); display: block; font-size: .8em; white-space: nowrap; }
+td:not(.word), td small { white-space: nowrap; }
+td small { color: var(--soft); display: block; font-size: .8em; }
 tbody tr:nth-child(even) { background: var(--shade); }
 .close { background: var(--close); } .agrees { background: var(--agrees); }
 .differs { background: var(--differs); } .unknown { background: var(--unknown); }

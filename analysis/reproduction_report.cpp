@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "analysis/outputs.h"
@@ -124,7 +125,9 @@ std::vector<Picture> draw_figures(const std::vector<CaseResult>& cases, const st
   std::vector<Picture> pictures;
   for (const FigureSpec& spec : figure_specs()) {
     ProfileChart chart{spec.title,
-                       "place along the slope x/L (0 crest, 1 toe)",
+                       std::string_view(spec.file).starts_with("lab")
+                           ? "place on the cone (0 top, 1 bottom)"
+                           : "place along the slope x/L (0 crest, 1 toe)",
                        spec.label,
                        std::string_view(spec.quantity) == "chi",
                        {}};
@@ -147,7 +150,7 @@ std::vector<Picture> draw_figures(const std::vector<CaseResult>& cases, const st
     const auto file = folder / fmt::format("{}.svg", spec.file);
     draw(chart, file);
     pictures.push_back(
-        {fmt::format("{} (figure {} of the thesis)", spec.title, spec.figure), file,
+        {fmt::format("{}: {} (figure {} of the thesis)", spec.title, spec.label, spec.figure), file,
          "Dots with a line: mean and standard deviation of the seeds simulated here. Squares: PFC3D; "
          "triangles: measured; both where the thesis prints numbers." +
              std::string(spec.dumps > 0 ? fmt::format(" Simulated after load {}.", spec.dumps) : "")});
@@ -284,10 +287,22 @@ void write_reproduction(const std::vector<CaseResult>& cases, const std::vector<
                         const std::filesystem::path& folder) {
   const std::filesystem::path pictures = folder / "pictures";
   std::filesystem::create_directories(pictures);
-  std::string body = "<h2>What agrees and what does not</h2>\n<ul>\n";
-  for (const std::string& line : reproduction_in_words(cases, trends))
-    body += fmt::format("<li>{}</li>\n", html_escaped(line));
-  body += "</ul>\n" + limits(cases) + signs_table(cases) + velocity_table(cases) + trends_table(trends);
+  const std::vector<std::string> words = reproduction_in_words(cases, trends);
+  const auto list = [&](const char* heading, auto&& chosen) {
+    std::string items;
+    for (const std::string& line : words)
+      if (chosen(line)) items += fmt::format("<li>{}</li>\n", html_escaped(line));
+    return items.empty() ? items : fmt::format("{}\n<ul>\n{}</ul>\n", heading, items);
+  };
+  const auto counts = [](const std::string& line) {
+    return std::isdigit(static_cast<unsigned char>(line[0])) || line.starts_with("of ");
+  };
+  const auto against = [](const std::string& line) { return line.starts_with("does not agree"); };
+  std::string body = list("<h2>What agrees and what does not</h2>", counts) +
+                     list("<h3>Not within two standard deviations</h3>", against) +
+                     list("<h3>Signs, trends, runs</h3>",
+                          [&](const std::string& line) { return !counts(line) && !against(line); }) +
+                     limits(cases) + signs_table(cases) + velocity_table(cases) + trends_table(trends);
   body += figures("Figures", draw_figures(cases, pictures));
   body += "<h2>Every printed value</h2>\n";
   double seconds = 0;

@@ -13,6 +13,7 @@
 #include "cli/ensemble/equivalence_fit.h"
 #include "cli/ensemble/output_scope.h"
 #include "cli/ensemble/run_request.h"
+#include "cli/ensemble/scenario_patch.h"
 #include "cli/ensemble_console.h"
 #include "cli/output_folder.h"
 #include "scree_version.h"
@@ -23,6 +24,8 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
+constexpr double kUndetermined =
+    0.8;                       // share of a range that an interval of 90 % takes when nothing is known
 constexpr double kMissed = 2;  // standard deviations beyond which a target is not met
 
 std::vector<std::string> names_of(const scree::CalibrationSpec& spec) {
@@ -127,26 +130,6 @@ scree::Simulator simulator(const scree::CalibrationSpec& spec, scree::ResultsSto
   };
 }
 
-// Keys with dots as nested YAML.
-struct Tree {
-  std::map<std::string, Tree> below;
-  std::string value;
-  void put(const std::string& key, const std::string& text) {
-    const auto dot = key.find('.');
-    if (dot == std::string::npos)
-      below[key].value = text;
-    else
-      below[key.substr(0, dot)].put(key.substr(dot + 1), text);
-  }
-  std::string yaml(int indent) const {
-    std::string text;
-    for (const auto& [key, node] : below)
-      text += fmt::format("{:{}}{}:{}\n{}", "", indent, key, node.value.empty() ? "" : " " + node.value,
-                          node.yaml(indent + 2));
-    return text;
-  }
-};
-
 // The whole rock, and the other keys that were calibrated, for `extends`.
 std::string material_file(const scree::CalibrationSpec& spec, const scree::CalibrationAnswer& answer,
                           std::size_t simulations) {
@@ -164,13 +147,13 @@ std::string material_file(const scree::CalibrationSpec& spec, const scree::Calib
   while (end != std::string::npos && end < resolved.size() && (end == begin || resolved[end] == ' '))
     end = resolved.find('\n', end) + 1;
   text += resolved.substr(begin, end - begin);
-  Tree others;
+  std::vector<std::string> others;
   std::map<std::string, double> values;
   for (std::size_t k = 0; k < spec.parameters.size(); ++k) values[spec.parameters[k].key] = answer.value[k];
   for (const auto& [key, leader] : spec.variation.ties) values[key] = values.at(leader);
   for (const auto& [key, value] : values)
-    if (!key.starts_with("material.")) others.put(key, fmt::format("{:.6g}", value));
-  return text + others.yaml(0);
+    if (!key.starts_with("material.")) others.push_back(fmt::format("{}={:.6g}", key, value));
+  return text + scree::nested_yaml(others);
 }
 
 void draw_picture(const scree::CalibrationSpec& spec, const scree::CalibrationResult& result,
@@ -207,7 +190,11 @@ void write_tables(const scree::CalibrationSpec& spec, const scree::CalibrationRe
                   const scree::CalibrationAnswer& answer, const fs::path& out) {
   const std::vector<std::string> names = names_of(spec);
   std::string runs = fmt::format("{},seed", fmt::join(names, ","));
-  for (const auto& target : spec.targets) runs += "," + target.output;
+  for (const auto& target : spec.targets) {
+    const bool alone = std::count_if(spec.targets.begin(), spec.targets.end(),
+                                     [&](const auto& other) { return other.output == target.output; }) == 1;
+    runs += "," + (alone ? target.output : target.scenario.stem().string() + "/" + target.output);
+  }
   runs += "\n";
   for (std::size_t k = 0; k < result.runs.size(); ++k) {
     runs += fmt::format("{:.6g},{}", fmt::join(values_at(spec, result.runs[k].at), ","), result.runs[k].seed);
@@ -245,14 +232,16 @@ void write_json(const scree::CalibrationSpec& spec, const scree::CalibrationResu
                        {"simulated_std", answer.at_value[t].std},
                        {"missed_by", answer.missed_by[t]}});
   const auto optional = [](const std::optional<double>& v) { return v ? Json(*v) : Json(nullptr); };
-  const Json json = {{"calibration", spec.name},
-                     {"version", fmt::format("{} ({})", SCREE_VERSION, SCREE_REVISION)},
-                     {"simulations", result.runs.size()},
-                     {"targets", targets},
-                     {"parameters", parameters},
-                     {"grid_interpolation", optional(answer.interpolated)},
-                     {"both_equal", optional(answer.equal)},
-                     {"excess_uncertainty", result.posterior->excess_uncertainty()}};
+  const Json json = {
+      {"calibration", spec.name},
+      {"version", fmt::format("{} ({})", SCREE_VERSION, SCREE_REVISION)},
+      {"simulations", result.runs.size()},
+      {"targets", targets},
+      {"parameters", parameters},
+      {"grid_interpolation", optional(answer.interpolated)},
+      {"both_equal", optional(answer.equal)},
+      {"both_equal_interval_90", answer.equal_interval ? Json(*answer.equal_interval) : Json(nullptr)},
+      {"excess_uncertainty", result.posterior->excess_uncertainty()}};
   scree::write_text_file(file, json.dump(2) + "\n");
 }
 
@@ -262,10 +251,12 @@ void print_answer(const scree::CalibrationSpec& spec, const scree::CalibrationRe
   for (std::size_t k = 0; k < spec.parameters.size(); ++k)
     fmt::print("{:<24} {:>8.4f}   {:.4f} to {:.4f}\n", spec.parameters[k].key, answer.value[k],
                answer.interval[k][0], answer.interval[k][1]);
-  if (answer.interpolated)
-    fmt::print("interpolated between the grid's points: {:.4f}\n", *answer.interpolated);
+  if (answer.interpolated) fmt::print("interpolated between the grid's points, as the thesis did\n");
   if (answer.equal)
-    fmt::print("the pair with both equal is taken, of all that fit (equal_fit.csv): {:.4f}\n", *answer.equal);
+    fmt::print("the pair with both equal is taken, of all that fit (equal_fit.csv){}\n",
+               answer.equal_interval ? fmt::format("; on that line {:.4f} to {:.4f} hold 90 %",
+                                                   (*answer.equal_interval)[0], (*answer.equal_interval)[1])
+                                     : "");
   else if (!answer.line.empty())
     fmt::print("the most likely pair is taken; all on the line in equal_fit.csv give the first target\n");
   fmt::print("\n{:<24} {:>10} {:>18}\n", "target", "aimed at", "simulated");
@@ -275,10 +266,15 @@ void print_answer(const scree::CalibrationSpec& spec, const scree::CalibrationRe
                std::abs(answer.missed_by[t]) > kMissed
                    ? fmt::format("   NOT MET: off by {:.1f} standard deviations", answer.missed_by[t])
                    : "");
-  for (std::size_t k = 0; k < spec.parameters.size(); ++k)
-    if (answer.cut_off[k])
-      fmt::print("note: {} is cut off by its range; widen it, or give a second target\n",
-                 spec.parameters[k].key);
+  for (std::size_t k = 0; k < spec.parameters.size(); ++k) {
+    const auto& [key, from, to] = spec.parameters[k];
+    if (answer.interval[k][1] - answer.interval[k][0] > kUndetermined * (to - from))
+      fmt::print(
+          "note: {} is not determined by these targets; its value is as good as any other of its range\n",
+          key);
+    else if (answer.cut_off[k])
+      fmt::print("note: {} is cut off by its range; widen it, or give a second target\n", key);
+  }
   if (result.posterior->excess_uncertainty() > spec.enough)
     fmt::print(
         "note: more simulations would make the intervals narrower (what is not known makes them {:.0f} % "
@@ -302,8 +298,7 @@ int run_equivalence(const CalibrateOptions& options) {
     fmt::print(stderr, "output '{}': {}\n", spec.output, why);
     return kBadInput;
   }
-  const fs::path out = options.out.empty() ? free_run_folder(spec.name) : options.out;
-  if (!prepare_folder(out, options.force)) return kBadInput;
+  if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
   const std::unique_ptr<scree::ResultsStore> store = open_store(options.store, false);
   if (!store) return kBadInput;
   std::vector<scree::EquivalenceNode> nodes;
@@ -325,6 +320,8 @@ int run_equivalence(const CalibrateOptions& options) {
     });
   });
   if (ended != kOk) return ended;
+  const fs::path out = options.out.empty() ? free_run_folder(spec.name) : options.out;
+  if (!prepare_folder(out, options.force)) return kBadInput;
   fmt::print("{:>6} {:>6} {:>14} {:>9} {:>8} {:>9} {:>8} {:>11}\n", "mu", "mu_r", "local_damping", "rrlinear",
              "impulse", "friction", "rolling", "");
   for (const scree::EquivalenceNode& node : nodes) {
@@ -345,7 +342,7 @@ int run_equivalence(const CalibrateOptions& options) {
                        spec.output, spec.scenario.filename().string(), spec.within, spec.seeds.size()),
            fmt::format("Made by scree {} ({}): scree calibrate {}.", SCREE_VERSION, SCREE_REVISION,
                        options.file.filename().string())}));
-  fmt::print("\ntable: {}; copied to assets/impulse/equivalent.csv, engine impulse takes it\n",
+  fmt::print("\ntable: {}; copy it to assets/impulse/equivalent.csv, where engine impulse looks for it\n",
              table.string());
   return kOk;
 }
@@ -359,17 +356,18 @@ int run_calibrate(const CalibrateOptions& options) {
   if (!loaded.errors.empty()) return kBadInput;
   const scree::CalibrationSpec& spec = loaded.spec;
   if (const std::string why = refusal(spec); !why.empty()) {
-    fmt::print(stderr, "{}\n", why);
+    fmt::print(stderr, "{}: {}\n", options.file.string(), why);
     return kBadInput;
   }
-  const fs::path out = options.out.empty() ? free_run_folder(spec.name) : options.out;
-  if (!prepare_folder(out, options.force)) return kBadInput;
+  if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
   const std::unique_ptr<scree::ResultsStore> store = open_store(options.store, false);
   if (!store) return kBadInput;
 
   scree::CalibrationResult result;
   const int ended = simulations([&] { result = scree::calibrate(spec, simulator(spec, *store, options)); });
   if (ended != kOk) return ended;
+  const fs::path out = options.out.empty() ? free_run_folder(spec.name) : options.out;
+  if (!prepare_folder(out, options.force)) return kBadInput;
   const scree::CalibrationAnswer answer = scree::answer_of(spec, result);
   write_tables(spec, result, answer, out);
   write_json(spec, result, answer, out / "calibration.json");
@@ -378,5 +376,7 @@ int run_calibrate(const CalibrateOptions& options) {
   fmt::print("\nresult: {}, material for `extends`: {}\n", (out / "calibration.json").string(),
              (out / "material.yaml").string());
   draw_picture(spec, result, answer, out / "calibration.svg");
-  return kOk;
+  const bool met = std::all_of(answer.missed_by.begin(), answer.missed_by.end(),
+                               [](double by) { return std::abs(by) <= kMissed; });
+  return met ? kOk : kFailed;
 }

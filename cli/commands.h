@@ -46,6 +46,7 @@ struct PredictOptions {
   std::filesystem::path store;      ///< empty: runs/store.sqlite
   std::vector<std::string> values;  ///< "material.mu=0.25"
   std::string output;               ///< empty: the repose angle
+  std::filesystem::path from;       ///< take the runs from this exported table, not from a store
 };
 
 struct ReproduceOptions {

@@ -124,8 +124,12 @@ int main(int argc, char** argv) {
       ->required();
   predict_app->add_option("--store", predict.store, "Results store; default: runs/store.sqlite");
   predict_app->add_option("--output", predict.output, "Number that is predicted; default: angle_deg");
+  predict_app->add_option("--from", predict.from, "Take the runs from this exported table, not from a store")
+      ->excludes("--store");
   predict_app->footer(
-      "\nExample:\n  scree predict scenarios/sweeps/repose_lab.yaml material.mu=0.25 material.mu_r=0.3\n");
+      "\nExample:\n  scree predict scenarios/sweeps/repose_lab.yaml material.mu=0.25 material.mu_r=0.3 "
+      "--from "
+      "assets/sweeps/repose_lab.csv\n");
 
   ReproduceOptions reproduce;
   CLI::App* reproduce_app = app.add_subcommand(

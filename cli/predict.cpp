@@ -30,8 +30,6 @@ int run_predict(const PredictOptions& options) {
   for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
   if (!loaded.errors.empty()) return kBadInput;
   const scree::Sweep& sweep = loaded.sweep;
-  const auto store = open_store(options.store, true);
-  if (!store) return kBadInput;
   const std::string output = options.output.empty() ? "angle_deg" : options.output;
 
   if (const std::string why = scree::why_not_given(sweep, output); !why.empty())
@@ -43,8 +41,19 @@ int run_predict(const PredictOptions& options) {
   std::vector<Axis> axes(sweep.parameters.size());
   std::vector<std::vector<double>> at;
   std::vector<double> values;
-  for (const scree::PointResults& results :
-       scree::look_up(sweep, scree::requests_of(sweep, asset_dir()), *store)) {
+  std::vector<scree::PointResults> points;
+  if (options.from.empty()) {
+    const auto store = open_store(options.store, true);
+    if (!store) return kBadInput;
+    points = scree::look_up(sweep, scree::requests_of(sweep, asset_dir()), *store);
+  } else {
+    try {
+      points = scree::read_sweep_csv(sweep, options.from);
+    } catch (const std::runtime_error& error) {
+      return refuse(error.what());
+    }
+  }
+  for (const scree::PointResults& results : points) {
     const scree::SweepPoint& point = *results.point;
     std::vector<double> numbers;
     for (std::size_t k = 0; k < axes.size(); ++k) {
@@ -65,12 +74,11 @@ int run_predict(const PredictOptions& options) {
     }
   }
   if (values.size() < 4)
-    return refuse(
-        fmt::format("the store has {} runs of this sweep with '{}', 4 are needed; run: scree sweep {}",
-                    values.size(), output, options.file.string()));
+    return refuse(fmt::format("there are {} runs of this sweep with '{}', 4 are needed; run: scree sweep {}",
+                              values.size(), output, options.file.string()));
 
   if (std::ssize(values) > scree::Emulator::kMostPoints)
-    return refuse(fmt::format("the store has {} runs of this sweep; {} are the most for a prediction",
+    return refuse(fmt::format("there are {} runs of this sweep; {} are the most for a prediction",
                               values.size(), scree::Emulator::kMostPoints));
 
   std::map<std::string, double> asked;
@@ -78,7 +86,8 @@ int run_predict(const PredictOptions& options) {
     const auto equals = text.find('=');
     const auto number = equals == std::string::npos ? std::nullopt : number_of(text.substr(equals + 1));
     if (!number) return refuse(fmt::format("'{}': write it as material.mu=0.25", text));
-    asked[text.substr(0, equals)] = *number;
+    if (!asked.emplace(text.substr(0, equals), *number).second)
+      return refuse(fmt::format("{} is given twice", text.substr(0, equals)));
   }
   Eigen::VectorXd point(static_cast<Eigen::Index>(axes.size()));
   for (std::size_t k = 0; k < axes.size(); ++k) {

@@ -78,7 +78,7 @@ int run_reproduce(const ReproduceOptions& options) {
   scree::EnsembleProgress progress;
   if (!options.from.empty()) {
     try {
-      points = scree::read_sweep_csv(sweep, options.from);
+      points = scree::read_sweep_csv(sweep, options.from, false);
     } catch (const std::runtime_error& error) {
       fmt::print(stderr, "{}\n", error.what());
       return kBadInput;

@@ -134,6 +134,37 @@ bool plot(const scree::Sweep& sweep, const std::vector<PointResults>& points, co
   return true;
 }
 
+// Whether the points lie on a line or a grid of numbers, so that a picture can show them.
+bool can_be_drawn(const scree::Sweep& sweep) {
+  if (sweep.parameters.empty() || sweep.parameters.size() > 2) return false;
+  std::vector<std::set<double>> values(sweep.parameters.size());
+  for (const scree::SweepPoint& point : sweep.points)
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const auto number = number_of(point.values[k]);
+      if (!number) return false;
+      values[k].insert(*number);
+    }
+  return values.size() == 1 || (values[0].size() > 1 && values[1].size() > 1 &&
+                                values[0].size() * values[1].size() == sweep.points.size());
+}
+
+// What would be refused only after hours of work; false with a message.
+bool can_be_written(const SweepOptions& options, const scree::Sweep& sweep) {
+  if (!options.plot.empty() && !can_be_drawn(sweep)) {
+    fmt::print(stderr, "--plot: needs one numeric parameter, or two that form a grid\n");
+    return false;
+  }
+  for (const fs::path& file : {options.csv, options.plot}) {
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    std::error_code none;
+    if (file.empty() || (fs::is_directory(folder, none) && !fs::is_directory(file, none))) continue;
+    fmt::print(stderr, "{}: cannot be written: {}\n", file.string(),
+               fs::is_directory(file, none) ? "it is a folder" : "its folder is not there");
+    return false;
+  }
+  return true;
+}
+
 // Tables and pictures of what is known.
 int show(const SweepOptions& options, const scree::Sweep& sweep, const std::vector<PointResults>& points) {
   if (options.failed) {
@@ -153,7 +184,7 @@ int show(const SweepOptions& options, const scree::Sweep& sweep, const std::vect
   }
   if (options.plot.empty() || interrupted) return kOk;
   if (shown.empty() || !plot(sweep, points, shown.front(), comparisons.front(), options.plot)) {
-    fmt::print(stderr, "--plot: needs results over one numeric parameter, or over two that form a grid\n");
+    fmt::print(stderr, "--plot: there are too few results to draw\n");
     return kBadInput;
   }
   fmt::print("picture: {}\n", options.plot.string());
@@ -172,6 +203,7 @@ int run_sweep(const SweepOptions& options) {
       fmt::print(stderr, "--output {}: {}\n", options.output, why);
       return kBadInput;
     }
+  if (!can_be_written(options, sweep)) return kBadInput;
   if (!options.from.empty()) {
     std::vector<PointResults> points;
     try {

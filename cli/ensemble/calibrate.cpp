@@ -102,11 +102,11 @@ class Calibrator {
       points.push_back({Eigen::Map<const Eigen::VectorXd>(unit.data(), dimensions()), next_seed()});
     add(points);
     learn();
-    while (static_cast<int>(used) < spec_.most_simulations &&
-           result_.posterior->excess_uncertainty() > spec_.enough) {
+    const int each = static_cast<int>(scenarios_.size()), most = spec_.most_simulations / each;  // points
+    while (static_cast<int>(used) < most && result_.posterior->excess_uncertainty() > spec_.enough) {
       points.clear();
-      for (const Eigen::VectorXd& at : result_.posterior->next_points(
-               std::min(spec_.together, spec_.most_simulations - static_cast<int>(used))))
+      for (const Eigen::VectorXd& at :
+           result_.posterior->next_points(std::min(spec_.together, most - static_cast<int>(used))))
         points.push_back({at, next_seed()});
       add(points);
       learn();
@@ -144,6 +144,31 @@ ParameterMap map_of(const CalibrationSpec& spec, const CalibrationResult& result
   return map;
 }
 
+// Of the probability on the line on which both parameters are equal; none if that line misses the nodes.
+std::optional<std::array<double, 2>> interval_where_equal(const CalibrationSpec& spec,
+                                                          const Posterior& posterior) {
+  const auto &a = spec.parameters[0], &b = spec.parameters[1];
+  std::vector<std::pair<double, double>> along;  // value, density
+  double sum = 0;
+  for (std::size_t node = 0; node < posterior.size(); ++node) {
+    const Eigen::VectorXd at = posterior.point(node);
+    const double off = (a.from + at[0] * (a.to - a.from)) - (b.from + at[1] * (b.to - b.from));
+    if (std::abs(off) > 1e-9 * (a.to - a.from)) continue;
+    along.emplace_back(a.from + at[0] * (a.to - a.from), posterior.density(node));
+    sum += posterior.density(node);
+  }
+  if (along.size() < 5 || !(sum > 0)) return std::nullopt;
+  std::sort(along.begin(), along.end());
+  std::array<double, 2> ends{along.front().first, along.back().first};
+  double below = 0;
+  for (const auto& [at, density] : along) {
+    if (below < 0.5 * (1 - kShare) * sum) ends[0] = at;
+    if (below < 0.5 * (1 + kShare) * sum) ends[1] = at;
+    below += density;
+  }
+  return ends;
+}
+
 bool are_mu_and_mu_r(const std::vector<FileReader::Span>& parameters) {
   return parameters.size() == 2 && parameters[0].key != parameters[1].key &&
          std::all_of(parameters.begin(), parameters.end(), [](const FileReader::Span& p) {
@@ -169,8 +194,14 @@ CalibrationAnswer answer_of(const CalibrationSpec& spec, const CalibrationResult
     answer.map = map_of(spec, result);
     answer.line = level_pairs(*answer.map, level);
     if (are_mu_and_mu_r(spec.parameters)) answer.equal = found(level_where_equal(*answer.map, level));
+    if (answer.equal) answer.equal_interval = interval_where_equal(spec, posterior);
   }
-  Eigen::VectorXd at = dimensions == 1 ? posterior.mean() : posterior.most_likely();
+  // Of three parameters some are often not determined: their most likely value would be any.
+  Eigen::VectorXd at = dimensions == 2 ? posterior.most_likely() : posterior.mean();
+  if (answer.interpolated) {
+    const FileReader::Span& span = spec.parameters[0];
+    at[0] = (*answer.interpolated - span.from) / (span.to - span.from);
+  }
   if (answer.equal)
     for (int k = 0; k < dimensions; ++k) {
       const FileReader::Span& span = spec.parameters[static_cast<std::size_t>(k)];

@@ -49,10 +49,13 @@ struct CalibrationAnswer {
   std::optional<ParameterMap> map;          ///< two parameters: the first target's number over them
   std::vector<std::array<double, 2>> line;  ///< two parameters: pairs that give the first target
   std::optional<double> equal;              ///< mu and mu_r: where both are equal
+  std::optional<std::array<double, 2>> equal_interval;  ///< 90 % of the probability on that line
 };
 
-/// One parameter: the mean of the posterior. mu and mu_r: where they are equal and give the target, as the
-/// thesis chose among all pairs that do; without such a pair, and for other parameters, the most likely ones.
+/// One parameter: on a grid linear between its points, as the thesis did, else the mean of the posterior. mu
+/// and mu_r: where they are equal and give the target, as the thesis chose among all pairs that do, with the
+/// interval along that line; without such a pair, and for two other parameters, the most likely ones; for
+/// three the mean.
 CalibrationAnswer answer_of(const CalibrationSpec& spec, const CalibrationResult& result);
 
 /// A value of a parameter from its share of the way between its ends, and as text for a scenario.

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include "analysis/emulator.h"
@@ -50,7 +51,8 @@ void read_passing_curve(const YamlNode& item, const fs::path& file, const fs::pa
 void read_targets(const YamlNode& root, const fs::path& file, const std::optional<fs::path>& scenario,
                   CalibrationSpec& spec, FileReader& reader) {
   const YamlNode* list =
-      reader.list_at(root, "targets", true, "a list, - {output: angle_deg, value: 25.4, uncertainty: 1.5}");
+      reader.list_at(root, "targets", true,
+                     "a list that is not empty, - {output: angle_deg, value: 25.4, uncertainty: 1.5}");
   if (list == nullptr) return;
   for (const YamlNode& item : list->items) {
     if (item.kind != YamlKind::map) {
@@ -132,7 +134,14 @@ CalibrationSpecResult load_calibration(const fs::path& file) {
   read_targets(*root, file, scenario, spec, reader);
   read_method(*root, spec, reader);
   const double nodes = std::pow(spec.grid_points, static_cast<double>(spec.parameters.size()));
-  const double runs = nodes * static_cast<double>(spec.seeds.size());
+  std::set<fs::path> scenarios;
+  for (const auto& target : spec.targets) scenarios.insert(target.scenario);
+  const double each = static_cast<double>(scenarios.size());
+  const double runs = nodes * static_cast<double>(spec.seeds.size()) * each;
+  if (reader.good() && spec.method == CalibrationSpec::Method::bayes &&
+      spec.first_points * each > spec.most_simulations)
+    reader.fail(root->place, fmt::format("method: {} first points in {} scenarios are more than 'most'",
+                                         spec.first_points, scenarios.size()));
   constexpr double kLeast = Emulator::kLeastPoints, kMost = Emulator::kMostPoints;
   if (reader.good() && spec.method == CalibrationSpec::Method::grid && (runs < kLeast || runs > kMost))
     reader.fail(root->place,

@@ -25,7 +25,7 @@ struct CalibrationSpec {
   Method method = Method::bayes;
   int grid_points = 4;        ///< grid: nodes along each parameter
   int first_points = 5;       ///< bayes: points of the first design
-  int most_simulations = 24;  ///< bayes: of each scenario
+  int most_simulations = 24;  ///< bayes: of all scenarios together
   int together = 2;           ///< bayes: simulations chosen at a time, whatever the number of cores
   double enough = 0.05;       ///< bayes: ends when ignorance adds less than this share to the uncertainty
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
+#include <map>
 #include <numeric>
 #include <set>
 #include <sstream>
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 constexpr double kPatience = 0.2;      // s between reports
 constexpr double kSignOfLife = 60;     // s between signs of life
 constexpr double kLookAtOthers = 2.0;  // s between looks at what other programs do
+constexpr int kMostInterruptions = 3;  // of one run alone, by a signal from outside
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -46,7 +48,7 @@ class Ensemble {
   }
   ~Ensemble() {
     executor_.cancel();
-    for (const std::string& key : under_way_) {
+    for (const auto& [key, run] : under_way_) {
       forget_folder(key);  // before another program may claim the run and make its own
       try {
         store_.release(key);
@@ -113,7 +115,7 @@ class Ensemble {
   }
 
   void start(const RunRequest& run) {
-    under_way_.insert(run.key);
+    under_way_[run.key] = &run;
     tried_.insert(run.key);
     const fs::path folder = folder_of(run.key);
     std::error_code error;
@@ -127,6 +129,7 @@ class Ensemble {
   }
 
   void settle(const EndedJob& ended) {
+    const RunRequest* request = under_way_.at(ended.key);
     under_way_.erase(ended.key);
     std::string failure = ended.message, text;
     std::map<std::string, double> outputs;
@@ -144,7 +147,15 @@ class Ensemble {
       }
     }
     forget_folder(ended.key);
-    if (ended.end == JobEnd::interrupted) return store_.release(ended.key);
+    if (ended.end == JobEnd::interrupted) {
+      // By a signal to all, which ends the loop as well, or to this run alone: then it is done again.
+      if (++interrupted_[ended.key] < kMostInterruptions) {
+        store_.release(ended.key);
+        waiting_.push_back(request);
+        return;
+      }
+      failure = fmt::format("interrupted {} times", kMostInterruptions);
+    }
     const bool ours = failure.empty() ? store_.finish(ended.key, text, outputs, ended.wall_seconds)
                                       : store_.fail(ended.key, failure, ended.wall_seconds);
     if (!ours) return;  // it was taken for dead, and another program does the run now
@@ -156,7 +167,9 @@ class Ensemble {
   Executor& executor_;
   EnsembleSettings settings_;
   std::vector<const RunRequest*> waiting_, left_to_others_;
-  std::set<std::string> under_way_, tried_;
+  std::map<std::string, const RunRequest*> under_way_;
+  std::map<std::string, int> interrupted_;  // how often, by key
+  std::set<std::string> tried_;
   double looked_ = 0;
   EnsembleProgress progress_;
 };

@@ -37,22 +37,27 @@ struct Node {
 
 }  // namespace
 
-std::string scenario_patch(const fs::path& scenario, const fs::path& from,
-                           const std::vector<std::string>& overrides,
-                           const std::vector<std::string>& comment) {
+std::string nested_yaml(const std::vector<std::string>& overrides) {
   Node root;
   for (const std::string& each : overrides) {
     const auto at = each.find('=');
     root.set(each.substr(0, at), each.substr(at + 1));
   }
   std::string text;
+  root.write(text, 0);
+  return text;
+}
+
+std::string scenario_patch(const fs::path& scenario, const fs::path& from,
+                           const std::vector<std::string>& overrides,
+                           const std::vector<std::string>& comment) {
+  std::string text;
   for (const std::string& line : comment) text += "# " + line + "\n";
   text += fmt::format("extends: {}\n", fs::absolute(scenario)
                                            .lexically_normal()
                                            .lexically_relative(fs::absolute(from).lexically_normal())
                                            .generic_string());
-  root.write(text, 0);
-  return text;
+  return text + nested_yaml(overrides);
 }
 
 }  // namespace scree

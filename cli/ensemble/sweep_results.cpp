@@ -21,6 +21,8 @@ namespace fs = std::filesystem;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+const std::string kTableOf = "# Runs of sweep ";  // first line of a table
+
 const char* name_of(RunState state) {
   return state == RunState::done ? "done" : state == RunState::failed ? "failed" : "running";
 }
@@ -115,7 +117,7 @@ FinishedRuns finished(const PointResults& point) {
 MeanStd PointResults::of(const std::string& output) const {
   std::vector<double> values;
   for (const auto& run : runs)
-    if (run && run->outputs.contains(output)) values.push_back(run->outputs.at(output));
+    if (run && run->at_rest() && run->outputs.contains(output)) values.push_back(run->outputs.at(output));
   return mean_std(values);
 }
 
@@ -135,7 +137,7 @@ std::set<std::string> output_names(const std::vector<PointResults>& points) {
 
 void write_sweep_csv(const Sweep& sweep, const std::vector<PointResults>& points, const fs::path& file) {
   const std::set<std::string> outputs = output_names(points);
-  std::string text;
+  std::string text = kTableOf + sweep.name + "\n";
   for (const std::string& name : sweep.parameters) text += csv_field(name) + ",";
   text += "seed,state,version,wall_seconds";
   for (const std::string& name : outputs) text += "," + csv_field(name);
@@ -154,7 +156,7 @@ void write_sweep_csv(const Sweep& sweep, const std::vector<PointResults>& points
   write_text_file(file, text);
 }
 
-std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const fs::path& file) {
+std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const fs::path& file, bool refuse_others) {
   std::ifstream in(file);
   if (!in) throw std::runtime_error(fmt::format("{}: cannot be opened", file.string()));
   std::vector<PointResults> points;
@@ -172,6 +174,8 @@ std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const fs::path& fil
   while (std::getline(in, line)) {
     ++at_line;
     if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line.starts_with(kTableOf) && line.substr(kTableOf.size()) != sweep.name)
+      fail(fmt::format("these are runs of sweep {}, not of {}", line.substr(kTableOf.size()), sweep.name));
     if (line.empty() || line.front() == '#') continue;
     const std::vector<std::string> fields = csv_fields(line);
     if (header.empty()) {
@@ -201,12 +205,18 @@ std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const fs::path& fil
       if (!value) fail(fmt::format("{} '{}' is no number", header[k], fields[k]));
       run.outputs[header[k]] = *value;
     }
+    bool known = false;
     for (PointResults& point : points) {
       if (!std::equal(point.point->values.begin(), point.point->values.end(), fields.begin(), same_value))
         continue;
+      known = true;
       const auto found = std::find(point.seeds.begin(), point.seeds.end(), *seed);
       if (found != point.seeds.end()) point.runs[static_cast<std::size_t>(found - point.seeds.begin())] = run;
     }
+    if (!known && refuse_others)
+      fail(fmt::format("{} is no point of sweep {}",
+                       fmt::join(fields.begin(), fields.begin() + static_cast<std::ptrdiff_t>(first), ", "),
+                       sweep.name));
   }
   if (header.empty()) fail("the file is empty");
   return points;

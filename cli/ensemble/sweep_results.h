@@ -21,6 +21,7 @@ struct PointResults {
   std::vector<std::uint64_t> seeds;
   std::vector<std::optional<StoredResult>> runs;
 
+  /// Over the seeds whose piles came to rest.
   MeanStd of(const std::string& output) const;
   int count(RunState state) const;
 };
@@ -34,14 +35,16 @@ std::vector<PointResults> look_up(const Sweep& sweep, const std::vector<RunReque
 /// Names of all numbers that the runs have.
 std::set<std::string> output_names(const std::vector<PointResults>& points);
 
-/// One row a run: the parameters, seed, state, version, wall_seconds, every output, message. Throws
-/// std::runtime_error if it cannot be written.
+/// A line that names the sweep, then one row a run: the parameters, seed, state, version, wall_seconds, every
+/// output, message. Throws std::runtime_error if it cannot be written.
 void write_sweep_csv(const Sweep& sweep, const std::vector<PointResults>& points,
                      const std::filesystem::path& file);
 
-/// The runs of this sweep in such a table; rows of other points or seeds are passed over. Throws
-/// std::runtime_error, one line `file:line: what is wrong`, if it is not one of this sweep's parameters.
-std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const std::filesystem::path& file);
+/// The runs of this sweep in such a table; rows of other seeds are passed over, those of other points if they
+/// are not refused. Throws std::runtime_error, one line `file:line: what is wrong`, if it is not a table of
+/// this sweep.
+std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const std::filesystem::path& file,
+                                         bool refuse_others = true);
 
 /// How an output of a sweep differs from the values printed for the cases that its points name.
 struct SweepComparison {

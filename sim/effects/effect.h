@@ -34,7 +34,7 @@ struct Modifications {
 
 /// What of the model effects need to know.
 struct EffectContext {
-  double d50 = 1;         ///< m, of the grading
+  double d50 = 1;         ///< m, of the grading, or the size given for it
   double smallest = 0;    ///< m, smallest diameter of the grading
   double density = 2760;  ///< kg/m3
   double gravity = 9.81;  ///< m/s2

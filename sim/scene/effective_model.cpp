@@ -17,7 +17,7 @@ const EffectUse* Scenario::effect(const Effect& wanted) const {
 
 EffectiveModel effective_model(const Scenario& scenario) {
   EffectiveModel model{{}, read_grading(scenario.grading_file), scenario.material};
-  const EffectContext context{.d50 = model.grading.diameter(0.5),
+  const EffectContext context{.d50 = scenario.effect_diameter.value_or(model.grading.diameter(0.5)),
                               .smallest = model.grading.min_diameter(),
                               .density = scenario.material.density};
   model.changes = modifications(scenario.effects, context);

@@ -178,7 +178,8 @@ struct Scenario {
   std::filesystem::path grading_file;
   std::variant<EndDump, ReposeLift, DropTest, PushDump, BucketDump> experiment;
   std::vector<ToolSpec> tools;
-  std::vector<EffectUse> effects;  ///< in the order of all_effects()
+  std::vector<EffectUse> effects;         ///< in the order of all_effects()
+  std::optional<double> effect_diameter;  ///< m; stands for the grading's D50 in them
   StopRule stop;
   Numerics numerics;
   OutputSpec output;

@@ -275,20 +275,28 @@ Fields keys(OutputSpec& o) {
   };
 }
 
+// Behind the effects stands what their sizes refer to, written only where it is given.
 Optionals effects(Scenario& s) {
   Optionals all;
   for (const Effect& effect : all_effects()) {
     all.names.push_back(effect.name);
     all.docs.push_back(effect.doc);
   }
+  all.names.push_back("reference");
+  all.docs.push_back(
+      "The size that stands in effects for the grading's D50, so that they mean the same in rock of other "
+      "gradings.");
   all.there = [&s] {
     std::vector<bool> there;
     for (const Effect& effect : all_effects()) there.push_back(s.effect(effect) != nullptr);
+    there.push_back(s.effect_diameter.has_value());
     return there;
   };
   all.select = [&s](const std::vector<bool>& there) {
     s.effects.clear();
-    for (std::size_t k = 0; k < there.size(); ++k) {
+    s.effect_diameter.reset();
+    if (there.back()) s.effect_diameter = 0.1;
+    for (std::size_t k = 0; k + 1 < there.size(); ++k) {
       if (!there[k]) continue;
       EffectUse& use = s.effects.emplace_back(EffectUse{&all_effects()[k], {}});
       for (const EffectParameter& parameter : use.effect->parameters)
@@ -296,8 +304,13 @@ Optionals effects(Scenario& s) {
     }
   };
   all.fields = [&s](std::size_t k) {
-    EffectUse& use = *s.effect(all_effects()[k]);
     Fields fields;
+    if (k == all_effects().size()) {
+      fields.push_back(
+          {"diameter_m", Number{&*s.effect_diameter, kMetre, {1e-4, 100}}, "Diameter of a grain.", true});
+      return fields;
+    }
+    EffectUse& use = *s.effect(all_effects()[k]);
     for (std::size_t p = 0; p < use.values.size(); ++p) {
       const EffectParameter& parameter = use.effect->parameters[p];
       fields.push_back({parameter.key,

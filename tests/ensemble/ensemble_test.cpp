@@ -91,6 +91,19 @@ TEST_F(Runs, OneThatFailsDoesNotStopTheRest) {
   EXPECT_EQ(end.done, 6u);
 }
 
+TEST_F(Runs, OneThatIsInterruptedAloneIsDoneAgain) {
+  ResultsStore store(folder / "store.sqlite");
+  const std::string mark = (folder / "interrupted").string();
+  LocalProcesses processes(2, program("if [ $n = 2 ] && [ ! -e " + mark + " ]; then touch " + mark +
+                                      "; exit 130; fi; if [ $n = 4 ]; then exit 130; fi"));
+  const EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
+  EXPECT_EQ(end.done, 5u);
+  EXPECT_EQ(end.failed, 1u);
+  EXPECT_EQ(store.find("key2")->outputs.at("angle_deg"), 2);
+  EXPECT_EQ(store.find("key4")->message, "interrupted 3 times");
+  EXPECT_EQ(begun().size(), 4u + 2 + 3);
+}
+
 TEST_F(Runs, InterruptedOnesAreGivenBackAndEnd) {
   ResultsStore store(folder / "store.sqlite");
   LocalProcesses processes(2, program("exec sleep 100"));

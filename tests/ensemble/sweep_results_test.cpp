@@ -81,11 +81,31 @@ TEST_F(SweepTable, RowsOfOtherPointsAndSeedsArePassedOver) {
   std::ofstream(file)
       << "# made by hand\nmaterial.mu,material.mu_r,seed,state,version,wall_seconds,angle_deg,message\n"
          "0.2,0.4,8,done,1,5,30.5,\n0.2,0.4,9,done,1,5,31,\n0.3,0.4,8,done,1,5,32,\n";
-  const std::vector<PointResults> read = read_sweep_csv(sweep, file);
+  EXPECT_THAT([this] { read_sweep_csv(sweep, file); },
+              ThrowsMessage<std::runtime_error>(HasSubstr(":5: 0.3, 0.4 is no point of sweep")));
+  const std::vector<PointResults> read = read_sweep_csv(sweep, file, false);
   EXPECT_EQ(read[0].of("angle_deg").n, 0);
   EXPECT_EQ(read[1].of("angle_deg").n, 1);
   EXPECT_EQ(read[1].of("angle_deg").mean, 30.5);
   EXPECT_EQ(read[1].count(RunState::done), 1);
+}
+
+TEST_F(SweepTable, OfAnotherSweepIsRefused) {
+  sweep.name = "coarse";
+  write_sweep_csv(sweep, points(), file);
+  sweep.name = "fine";
+  EXPECT_THAT(
+      [this] { read_sweep_csv(sweep, file); },
+      ThrowsMessage<std::runtime_error>(HasSubstr(":1: these are runs of sweep coarse, not of fine")));
+}
+
+TEST_F(SweepTable, MeansAreOfPilesAtRest) {
+  std::vector<PointResults> all = points();
+  all[1].runs[0] = run(20);
+  all[1].runs[1] = run(30);
+  all[1].runs[1]->outputs["at_rest"] = 0;
+  EXPECT_EQ(all[1].of("angle_deg").n, 1);
+  EXPECT_EQ(all[1].of("angle_deg").mean, 20);
 }
 
 TEST_F(SweepTable, SaysWhatIsWrong) {

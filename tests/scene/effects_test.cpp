@@ -41,6 +41,26 @@ TEST(EffectList, IsFitForUse) {
   EXPECT_EQ(find_effect("magic"), nullptr);
 }
 
+TEST(Effects, ReferToOneSizeInRockOfAnyGrading) {
+  ScenarioFolder folder;
+  const std::string tail =
+      "effects: {reference: {diameter_m: 0.03}, friction_by_size: {exponent: 0.5}, density_by_size: "
+      "{exponent: 0.1}}\n";
+  for (const std::string grading : {"CM0", "lab"}) {
+    const auto given = folder.load(
+        "grading: " + grading + "\nmaterial: {mu: 0.4, mu_r: 0.3}\nexperiment: {type: drop_test}\n" + tail);
+    ASSERT_THAT(given.errors, IsEmpty()) << given.errors.front().text();
+    const EffectiveModel model = effective_model(given.scenario);
+    EXPECT_DOUBLE_EQ(model.changes.contact.reference_diameter, 0.03);
+    EXPECT_DOUBLE_EQ(model.material.density_diameter, 0.03);
+    EXPECT_THAT(given.scenario.resolved_yaml, HasSubstr("diameter_m: 0.03"));
+  }
+  const auto own = folder.load(std::string(kDump) + "effects: {friction_by_size: {exponent: 0.5}}\n");
+  const EffectiveModel model = effective_model(own.scenario);
+  EXPECT_DOUBLE_EQ(model.changes.contact.reference_diameter, model.grading.diameter(0.5));
+  EXPECT_EQ(own.scenario.resolved_yaml.find("reference"), std::string::npos);
+}
+
 // An effect that is there changes something, and nothing at the amplitude that means absent.
 TEST(EffectList, AbsentMeansAbsent) {
   const auto differs = [](const Modifications& m) {
