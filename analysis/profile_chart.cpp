@@ -18,7 +18,7 @@ constexpr std::array<const char*, 7> kColours{"#0072b2", "#d55e00", "#009e73", "
                                               "#e69f00", "#56b4e9", "#333333"};
 
 // Series are shifted sideways so that bars do not hide each other: by as much of x, all together at most.
-constexpr double kDodge = 0.014, kWidestDodge = 0.1;
+constexpr double kDodge = 0.014, kWidestDodge = 0.06;
 
 struct Look {
   const char* name;
@@ -68,7 +68,7 @@ void draw(const ProfileChart& chart, const std::filesystem::path& file) {
   }
   script += chart_terminal(760, 440);
   script += fmt::format(
-      "set title {}\nset xlabel {}\nset ylabel {}\nset key bmargin center horizontal Left reverse\nset "
+      "set title {}\nset xlabel {} offset 0,0.5\nset ylabel {}\nset key bmargin center horizontal Left reverse\nset "
       "xrange [0:1]\n",
       gnuplot_quoted(chart.title), gnuplot_quoted(chart.x_label), gnuplot_quoted(chart.y_label));
   if (chart.zero_line)
