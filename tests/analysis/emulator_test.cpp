@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -105,6 +106,36 @@ TEST(Posterior, IsTheTargetSeenThroughTheCurve) {
   EXPECT_NEAR(posterior.most_likely()[0], truth, 0.005);
   EXPECT_NEAR(0.5 * (interval[1] - interval[0]), 1.645 * uncertainty / slope, 0.1 * uncertainty / slope);
   EXPECT_LT(posterior.excess_uncertainty(), 0.01);
+}
+
+// Where the emulator is not sure the likelihood is wider: the density of every node against that of the first
+// is that of normal numbers with the variances of target and emulator together.
+TEST(Posterior, AddsTheEmulatorsUncertaintyToTheTargets) {
+  Eigen::MatrixXd x(4, 1);
+  x << 0, 0.1, 0.2, 1.0;
+  Eigen::VectorXd y(4);
+  for (int k = 0; k < 4; ++k) y[k] = angle(x(k, 0));
+  const Emulator emulator(x, y);
+  const double value = angle(0.5), uncertainty = 0.5;
+  const Posterior posterior({{value, uncertainty, &emulator}}, 1);
+  double surest = 1e300, least_sure = 0;
+  const auto log_normal = [&](std::size_t node) {
+    const Prediction p = emulator.at(posterior.point(node));
+    const double variance = uncertainty * uncertainty + p.std * p.std;
+    surest = std::min(surest, p.std), least_sure = std::max(least_sure, p.std);
+    return -0.5 * (std::log(variance) + (p.mean - value) * (p.mean - value) / variance);
+  };
+  // From the likeliest node outwards, as far as densities are above rounding.
+  std::size_t top = 0;
+  for (std::size_t node = 0; node < posterior.size(); ++node)
+    if (posterior.density(node) > posterior.density(top)) top = node;
+  for (std::size_t node = 0; node < posterior.size(); ++node) {
+    if (!(posterior.density(node) > 1e-12 * posterior.density(top))) continue;
+    EXPECT_NEAR(std::log(posterior.density(node) / posterior.density(top)),
+                log_normal(node) - log_normal(top), 1e-9);
+  }
+  EXPECT_GT(least_sure, uncertainty);  // there is something to add
+  EXPECT_LT(surest, 0.5 * uncertainty);
 }
 
 TEST(Posterior, AsksWhereItMatters) {

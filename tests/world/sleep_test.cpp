@@ -49,6 +49,20 @@ TEST(Sleep, FallingBallDoesNotSleep) {
   EXPECT_EQ(b.world.statistics().asleep, 0);
 }
 
+// Slow is not still: on a floor without friction nothing brakes a ball that makes a twentieth of its radius
+// in one of the windows, 3 sqrt(R / g), over which sleep is judged.
+TEST(Sleep, CreepingBallDoesNotSleep) {
+  WorldSettings settings;
+  settings.sleep = true;
+  RrlinearWorld world(settings);
+  world.add_mesh(make_box({-20, -20, -2}, {20, 20, 0}), {0, 0}, Motion::fixed(Pose{}));
+  const double speed = 0.05 * kRadius / (3 * std::sqrt(kRadius / 9.81));
+  world.add_spheres({ball({0, 0, kRadius}, {speed, 0, 0})});
+  world.advance_to(10);
+  EXPECT_EQ(world.statistics().asleep, 0);
+  EXPECT_NEAR(world.snapshot().grains[0].position.x(), 10 * speed, 0.01 * 10 * speed);
+}
+
 TEST(Sleep, BlowWakes) {
   Bench b({ball({0, 0, kRadius})});
   b.world.advance_to(10);

@@ -37,10 +37,13 @@ struct Scene {
       spheres.spin[i].set(any_vector(random));
       spheres.spin[i].w = 0.4 * spheres.velocity[i].w * spheres.place[i].w * spheres.place[i].w;
     }
-    std::vector<int> order(count);
+    list();
+  }
+  void list() {
+    std::vector<int> order(static_cast<std::size_t>(spheres.size()));
     std::iota(order.begin(), order.end(), 0);
     pairs.rebuild(spheres, order, 0.0);
-    sleep.renumber(order, spheres, pairs, std::vector<std::uint8_t>(count, 0), 0.0, 9.81);
+    sleep.renumber(order, spheres, pairs, std::vector<std::uint8_t>(order.size(), 0), 0.0, 9.81);
     split_into_blocks(sleep.awake(), blocks);
   }
   // One step's forces; as one thread does it, or as several do.
@@ -166,6 +169,31 @@ INSTANTIATE_TEST_SUITE_P(
                         .effects = {.mu_exponent = 0.5, .mu_r_exponent = -0.4, .reference_diameter = 0.8}},
                     Additions{.effects = {.fixed_mu = 0.5, .fixed_mu_r = 2}},
                     Additions{0.2, 0.5, {1e4, 0.2, 0.3, 1, 0.2, 0.3, 0.7, 1.5, 0.8}}));
+
+// A contact that opens and closes again, listed all the while, begins anew: its shear is ks times the slip of
+// one step.
+TEST(StepKernels, ContactThatOpensForgetsItsShear) {
+  Material material;
+  material.mu = 1;
+  Scene scene(2, 0, material);
+  Spheres& s = scene.spheres;
+  const double speed = 0.01, dt = 0.01;
+  s.place[0] = {0, 0, 0, 1}, s.place[1] = {1.9, 0, 0, 1};
+  s.velocity[0].set(Vec3::Zero()), s.velocity[1].set({0, speed, 0});
+  s.spin[0].set(Vec3::Zero()), s.spin[1].set(Vec3::Zero());
+  scene.list();
+  const double one_step = ball_ball(scene.law, 1.0, 1.0).ks * speed * dt;
+  for (const int steps : {1, 2}) {
+    scene.forces(dt, false);
+    EXPECT_NEAR(scene.sums[0].force.y, steps * one_step, 1e-6 * one_step);
+  }
+  s.place[1].x = 2.05;
+  scene.forces(dt, false);
+  EXPECT_EQ(scene.sums[0].force.vec(), Vec3::Zero());
+  s.place[1].x = 1.9;
+  scene.forces(dt, false);
+  EXPECT_NEAR(scene.sums[0].force.y, one_step, 1e-6 * one_step);
+}
 
 // A block that touches hundreds of small spheres: its row, and the pairs that close in one step, are longer
 // than what is taken at a time. Their springs push it up with sum kn u.
