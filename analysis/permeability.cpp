@@ -9,7 +9,7 @@ namespace scree {
 namespace {
 
 constexpr double kGeometry = 0.1;        // C_G, with the units of the source
-constexpr double kTaylor = 0.004;       // C_1
+constexpr double kTaylor = 0.004;        // C_1
 constexpr double kTortuosity = 2;        // x
 constexpr double kUnitWeight = 9.789;    // of water at 20 C, kN/m3
 constexpr double kViscosity = 1.002e-3;  // of water at 20 C, Pa s

@@ -9,7 +9,7 @@ namespace scree {
 
 /// Shares passing at a diameter, over pictures.
 struct EnvelopePoint {
-  double diameter = 0;  ///< m
+  double diameter = 0;                                                                 ///< m
   double mean = 0, std = 0, median = 0, low68 = 0, high68 = 0, low95 = 0, high95 = 0;  ///< shares, 0 to 1
 };
 

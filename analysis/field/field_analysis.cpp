@@ -116,7 +116,8 @@ FieldSection section_of(const SlopeGradings& gradings, std::size_t k, const Fiel
       section.values[each.quantity.name].push_back(known ? each.of(*curve, *original) : kNone);
     for (const AgainstOriginal& each : numbers_with_fines())
       section.values[each.quantity.name].push_back(
-          known && options.sieved ? each.of(with_fines(*curve, options), with_fines(*original, options)) : kNone);
+          known && options.sieved ? each.of(with_fines(*curve, options), with_fines(*original, options))
+                                  : kNone);
     section.values[kGivenChi.name].push_back(picture.given_chi[k]);
   }
   add_curves(section, curves, options);
@@ -129,7 +130,8 @@ void check(const SlopeGradings& gradings, const FieldOptions& options) {
       std::none_of(gradings.pictures.begin(), gradings.pictures.end(),
                    [](const SlopeGradings::Picture& picture) { return picture.curves.front().has_value(); }))
     throw std::invalid_argument(
-        "no picture has its whole slope (section 0): chi and ratios need the rock as dumped; give it as --original GRADING.csv");
+        "no picture has its whole slope (section 0): chi and ratios need the rock as dumped; give it as "
+        "--original GRADING.csv");
 }
 
 }  // namespace
@@ -148,7 +150,8 @@ const std::vector<FieldQuantity>& field_quantities() {
 
 const FieldQuantity* field_quantity(const std::string& name) {
   const auto& all = field_quantities();
-  const auto found = std::find_if(all.begin(), all.end(), [&](const FieldQuantity& q) { return q.name == name; });
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const FieldQuantity& q) { return q.name == name; });
   return found == all.end() ? nullptr : &*found;
 }
 

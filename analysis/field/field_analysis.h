@@ -22,9 +22,9 @@ struct FieldQuantity {
 
 /// d10, d15, d30, d50, d60, d80, d90, d95 (m), cu, cc, d90_over_d15; and against the original material, which
 /// is the picture's own whole slope or a grading given: d10_rel, d50_rel, d80_rel, d90_rel, d95_rel, chi, and
-/// conductivities at equal void ratio ksat_kcm_rel, ksat_taylor_rel (analysis/permeability.h), and the same of
-/// both gradings with the fines of the sieved sample, ksat_kcm_rel_filled, ksat_taylor_rel_filled; chi_given as
-/// it stands in the table.
+/// conductivities at equal void ratio ksat_kcm_rel, ksat_taylor_rel (analysis/permeability.h), and the same
+/// of both gradings with the fines of the sieved sample, ksat_kcm_rel_filled, ksat_taylor_rel_filled;
+/// chi_given as it stands in the table.
 const std::vector<FieldQuantity>& field_quantities();
 /// The one of this name; null if there is none.
 const FieldQuantity* field_quantity(const std::string& name);

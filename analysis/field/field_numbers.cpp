@@ -28,7 +28,9 @@ const std::vector<double>* values_of(const FieldAnalysis& field, const std::stri
   return found == at->values.end() ? nullptr : &found->second;
 }
 
-Number finite(double value) { return std::isfinite(value) ? Number(value) : std::nullopt; }
+Number finite(double value) {
+  return std::isfinite(value) ? Number(value) : std::nullopt;
+}
 
 Number statistic(const FieldAnalysis& field, const Parts& parts) {
   const auto* values = values_of(field, parts[1], parts[3]);
@@ -142,9 +144,10 @@ Number passing_std(const FieldAnalysis& field, const Parts& parts) {
   if (section == nullptr || section->envelope.empty()) return std::nullopt;
   const auto& all = section->envelope;
   if (parts[1] == "max") {
-    return finite(std::max_element(all.begin(), all.end(), [](const EnvelopePoint& a, const EnvelopePoint& b) {
-                    return a.std < b.std;
-                  })->std);
+    return finite(
+        std::max_element(all.begin(), all.end(), [](const EnvelopePoint& a, const EnvelopePoint& b) {
+          return a.std < b.std;
+        })->std);
   }
   const double diameter = std::stod(parts[1].str().substr(3));
   return finite(std::min_element(all.begin(), all.end(), [&](const EnvelopePoint& a, const EnvelopePoint& b) {
@@ -183,7 +186,8 @@ Number conductivity(const FieldAnalysis& field, const Parts& parts) {
 }
 
 const std::vector<Form>& forms() {
-  const std::string section = "_(whole|S[0-9]+)", value = "_(-?[0-9.]+)", curve = "(median|mean|medianfilled|meanfilled)";
+  const std::string section = "_(whole|S[0-9]+)", value = "_(-?[0-9.]+)",
+                    curve = "(median|mean|medianfilled|meanfilled)";
   static const std::vector<Form> all{
       {std::regex("(.+)_(mean|std|median|min|max)" + section), statistic},
       {std::regex("(.+)_(mode|modefrequency)" + section), mode},

@@ -23,7 +23,8 @@ namespace scree {
 ///   passingstd_max_SECTION, passingstd_at_DIAMETER_SECTION    deviation of the share passing over pictures
 ///   median_D_SECTION, mean_D_, medianfilled_D_, meanfilled_D_ D: d10, cu ... of that curve
 ///   median_share_LOW_HIGH_SECTION, ...                        share of that curve between diameters (m)
-///   medianfilled_kcm_SECTION, _taylor_, ...                   conductivity of that curve over that of the whole
+///   medianfilled_kcm_SECTION, _taylor_, ...                   conductivity of that curve over that of the
+///   whole
 std::optional<double> field_number(const FieldAnalysis& field, const std::string& name);
 
 }  // namespace scree

@@ -9,7 +9,9 @@
 namespace scree {
 namespace {
 
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : ""; }
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "";
+}
 
 /// The whole slope, then the sections.
 std::vector<const FieldSection*> parts_of(const FieldAnalysis& field) {
@@ -30,11 +32,11 @@ std::string statistics(const FieldAnalysis& field) {
     for (const FieldQuantity& quantity : field_quantities()) {
       if (!has(*section, quantity.name)) continue;
       const Spread s = section->spread(quantity.name);
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", section->name, quantity.name,
-                          quantity.unit, s.moments.n, number(s.moments.mean), number(s.moments.std),
-                          number(s.median), number(s.low68), number(s.high68), number(s.low95),
-                          number(s.high95), number(s.min), number(s.max),
-                          s.normal.known ? number(s.normal.p) : "", s.lognormal.known ? number(s.lognormal.p) : "");
+      text += fmt::format(
+          "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", section->name, quantity.name, quantity.unit,
+          s.moments.n, number(s.moments.mean), number(s.moments.std), number(s.median), number(s.low68),
+          number(s.high68), number(s.low95), number(s.high95), number(s.min), number(s.max),
+          s.normal.known ? number(s.normal.p) : "", s.lognormal.known ? number(s.lognormal.p) : "");
     }
   return text;
 }
@@ -64,8 +66,8 @@ std::string envelopes(const FieldAnalysis& field) {
   for (const FieldSection* section : parts_of(field))
     for (const EnvelopePoint& p : section->envelope)
       text += fmt::format("{},{},{},{},{},{},{},{},{}\n", section->name, number(p.diameter), number(p.mean),
-                          number(p.std), number(p.median), number(p.low68), number(p.high68),
-                          number(p.low95), number(p.high95));
+                          number(p.std), number(p.median), number(p.low68), number(p.high68), number(p.low95),
+                          number(p.high95));
   return text;
 }
 
@@ -76,8 +78,9 @@ std::string histograms(const FieldAnalysis& field) {
       if (!has(*section, quantity)) continue;
       const Histogram bins = histogram(section->values.at(quantity), field.bin_of(quantity));
       for (std::size_t k = 0; k < bins.shares.size(); ++k)
-        text += fmt::format("{},{},{},{},{}\n", quantity, section->name, number(bins.middle(k) - bins.width / 2),
-                            number(bins.middle(k) + bins.width / 2), number(bins.shares[k]));
+        text +=
+            fmt::format("{},{},{},{},{}\n", quantity, section->name, number(bins.middle(k) - bins.width / 2),
+                        number(bins.middle(k) + bins.width / 2), number(bins.shares[k]));
     }
   return text;
 }
@@ -101,9 +104,9 @@ std::string conductivities(const FieldAnalysis& field) {
   for (const ConductivityRow& r : conductivity_rows(field))
     text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.section, r.means ? "means" : "medians",
                         r.filled ? "sieved" : "as seen", number(r.d10), number(r.d50), number(r.cu),
-                        number(field.options.void_ratio), number(100 * r.kozeny_carman), number(r.kozeny_carman),
-                        number(r.taylor), number(r.kozeny_carman_rel), number(r.taylor_rel),
-                        number(r.taylor_rel_square));
+                        number(field.options.void_ratio), number(100 * r.kozeny_carman),
+                        number(r.kozeny_carman), number(r.taylor), number(r.kozeny_carman_rel),
+                        number(r.taylor_rel), number(r.taylor_rel_square));
   return text;
 }
 

@@ -14,7 +14,8 @@ struct OriginFit {
 };
 
 /// Pairs with a NaN are left out; NaN for fewer than two pairs. The two R2 answer different questions, see
-/// Eisenhauer, Teaching Statistics 25 (2003) 76. Throws std::invalid_argument for samples of different length.
+/// Eisenhauer, Teaching Statistics 25 (2003) 76. Throws std::invalid_argument for samples of different
+/// length.
 OriginFit fit_through_origin(const std::vector<double>& x, const std::vector<double>& y);
 
 }  // namespace scree

@@ -22,8 +22,8 @@ struct PrintedValue {
 
 /// How ours compares.
 enum class PrintedVerdict {
-  as_printed,      ///< the same to the last digit printed, or a bound kept
-  within_reach,    ///< the rounding of the diameters in the table can make the difference
+  as_printed,    ///< the same to the last digit printed, or a bound kept
+  within_reach,  ///< the rounding of the diameters in the table can make the difference
   differs,
   not_computable,  ///< the table does not give it
 };

@@ -33,13 +33,12 @@ struct Layout {
 };
 
 Layout layout_of(const std::filesystem::path& file, const DelimitedTable& table) {
-  const auto fail = [&](const std::string& what) -> FileError {
-    return {file, table.header_line(), what};
-  };
+  const auto fail = [&](const std::string& what) -> FileError { return {file, table.header_line(), what}; };
   Layout layout;
   const auto image = table.column("image"), section = table.column("section");
   if (!image || !section)
-    throw fail(fmt::format("the header has no {}; needed are image, section, and diameters", !image ? "image" : "section"));
+    throw fail(fmt::format("the header has no {}; needed are image, section, and diameters",
+                           !image ? "image" : "section"));
   layout.image = *image, layout.section = *section;
   layout.chi = table.column("chi");
   static const std::regex of_curve("d([0-9]+(?:\\.[0-9]+)?)_(mm|cm|m)"), of_row("diameter_(mm|cm|m)");
@@ -65,7 +64,9 @@ Layout layout_of(const std::filesystem::path& file, const DelimitedTable& table)
   if (layout.diameter && !layout.columns.empty())
     throw fail("columns of D_x and a column of diameters exclude each other");
   if (!layout.diameter && layout.columns.size() < kFewestDiameters)
-    throw fail("diameters are missing: three columns like d50_cm at least, or diameter_mm and passing_pct, or diameter_mm of grains");
+    throw fail(
+        "diameters are missing: three columns like d50_cm at least, or diameter_mm and passing_pct, or "
+        "diameter_mm of grains");
   return layout;
 }
 
@@ -74,7 +75,8 @@ int section_in(const DelimitedTable& table, const std::string& text) {
   if (name == "whole") return 0;
   const auto number = number_in(name.starts_with("s") ? std::string_view(name).substr(1) : name);
   if (!number || *number != std::floor(*number) || *number < 0 || *number > kMostSections)
-    table.fail(fmt::format("section '{}' is none; allowed are whole, S1 (at the crest), S2 ... S{}", text, kMostSections));
+    table.fail(fmt::format("section '{}' is none; allowed are whole, S1 (at the crest), S2 ... S{}", text,
+                           kMostSections));
   return static_cast<int>(*number);
 }
 
@@ -118,7 +120,8 @@ std::vector<Grading::Point> curve_of_grains(std::vector<double> diameters) {
 
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& file) : file_(file), table_(file), layout_(layout_of(file, table_)) {}
+  explicit Reader(const std::filesystem::path& file)
+      : file_(file), table_(file), layout_(layout_of(file, table_)) {}
 
   SlopeGradings read() {
     while (table_.next()) read_row();
@@ -162,7 +165,8 @@ class Reader {
 
   double diameter_in(std::size_t column, double factor) const {
     const auto value = table_.number(column);
-    if (!value || !(*value > 0)) table_.fail(fmt::format("{} must be a number above 0", table_.header()[column]));
+    if (!value || !(*value > 0))
+      table_.fail(fmt::format("{} must be a number above 0", table_.header()[column]));
     return *value * factor;
   }
 
@@ -202,7 +206,8 @@ class Reader {
       if (!layout_.diameter) close_ends(row.points);
       picture.curves[k] = Grading(fmt::format("image {} section {}", picture.name, section), row.points);
     } catch (const std::invalid_argument& error) {
-      throw FileError(file_, row.line, fmt::format("image {} section {}: {}", picture.name, section, error.what()));
+      throw FileError(file_, row.line,
+                      fmt::format("image {} section {}: {}", picture.name, section, error.what()));
     }
   }
 
@@ -216,6 +221,8 @@ class Reader {
 
 }  // namespace
 
-SlopeGradings read_slope_gradings(const std::filesystem::path& file) { return Reader(file).read(); }
+SlopeGradings read_slope_gradings(const std::filesystem::path& file) {
+  return Reader(file).read();
+}
 
 }  // namespace scree

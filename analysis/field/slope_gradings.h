@@ -9,8 +9,8 @@
 
 namespace scree {
 
-/// What pictures of a slope say of its rock. Index 0 of a picture is its whole slope, k is section Sk from the
-/// crest.
+/// What pictures of a slope say of its rock. Index 0 of a picture is its whole slope, k is section Sk from
+/// the crest.
 struct SlopeGradings {
   struct Picture {
     std::string name;

@@ -11,7 +11,9 @@ namespace {
 // A value that was printed on a border is there but for the rounding of its binary form.
 constexpr double kOnBorder = 1e-9;
 
-int bin_of(double value, double width) { return static_cast<int>(std::floor(value / width + kOnBorder)); }
+int bin_of(double value, double width) {
+  return static_cast<int>(std::floor(value / width + kOnBorder));
+}
 
 std::vector<double> finite(std::vector<double> values) {
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
@@ -66,7 +68,8 @@ Histogram histogram(const std::vector<double>& values, double width) {
   Histogram out{width, bin_of(*low, width), {}};
   out.shares.assign(static_cast<std::size_t>(bin_of(*high, width) - out.first) + 1, 0);
   for (const double value : known)
-    out.shares[static_cast<std::size_t>(bin_of(value, width) - out.first)] += 1 / static_cast<double>(known.size());
+    out.shares[static_cast<std::size_t>(bin_of(value, width) - out.first)] +=
+        1 / static_cast<double>(known.size());
   return out;
 }
 

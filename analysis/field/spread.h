@@ -12,7 +12,7 @@ namespace scree {
 struct Spread {
   MeanStd moments;
   double median = 0, low68 = 0, high68 = 0, low95 = 0, high95 = 0, min = 0, max = 0;  ///< NaN without values
-  NormalityTest normal;     ///< of the values
+  NormalityTest normal;                                                               ///< of the values
   NormalityTest lognormal;  ///< of their logarithms; not known where one is not above 0
 };
 
