@@ -12,6 +12,7 @@ namespace scree {
 namespace {
 
 constexpr int kPoints = 600;
+constexpr int kShares = 200;  // steps of half a percent: D10, D15 ... are points
 
 Grading curve_of(const std::vector<EnvelopePoint>& envelope, double EnvelopePoint::*share,
                  const std::string& name) {
@@ -62,6 +63,18 @@ Grading median_curve(const std::vector<EnvelopePoint>& envelope, const std::stri
 
 Grading mean_curve(const std::vector<EnvelopePoint>& envelope, const std::string& name) {
   return curve_of(envelope, &EnvelopePoint::mean, name);
+}
+
+Grading mean_diameter_curve(const std::vector<Grading>& curves, const std::string& name) {
+  if (curves.empty()) throw std::invalid_argument("a mean curve needs curves");
+  std::vector<Grading::Point> points;
+  for (int k = 0; k <= kShares; ++k) {
+    const double share = static_cast<double>(k) / kShares;
+    double sum = 0;
+    for (const Grading& curve : curves) sum += curve.diameter(share);
+    points.push_back({sum / static_cast<double>(curves.size()), share});
+  }
+  return Grading(name, std::move(points));
 }
 
 Grading with_sieved_fines(const Grading& curve, const Grading& sieved, double limit) {

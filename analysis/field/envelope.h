@@ -22,6 +22,10 @@ std::vector<EnvelopePoint> envelope(const std::vector<Grading>& curves);
 Grading median_curve(const std::vector<EnvelopePoint>& envelope, const std::string& name);
 Grading mean_curve(const std::vector<EnvelopePoint>& envelope, const std::string& name);
 
+/// The curve of the means of the diameters at equal shares passing: other than mean_curve(), it is not
+/// widened by pictures that differ in size. Throws std::invalid_argument without curves.
+Grading mean_diameter_curve(const std::vector<Grading>& curves, const std::string& name);
+
 /// The same curve below `limit` (m) replaced by that of a sieved sample: its mass below the limit is
 /// distributed as the sample's mass below it is. A curve with nothing below the limit stays as it is. Throws
 /// std::invalid_argument if the sample has nothing below the limit, or the curve nothing above it.

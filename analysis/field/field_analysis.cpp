@@ -85,12 +85,12 @@ Grading with_fines(const Grading& grading, const FieldOptions& options) {
 void add_curves(FieldSection& section, const std::vector<Grading>& curves, const FieldOptions& options) {
   if (curves.empty()) return;
   section.envelope = envelope(curves);
-  section.median = median_curve(section.envelope, section.name + ", medians");
-  section.mean = mean_curve(section.envelope, section.name + ", means");
-  if (options.sieved) {
-    section.median_corrected = with_fines(*section.median, options);
-    section.mean_corrected = with_fines(*section.mean, options);
-  }
+  section.curves.emplace(CurveKind::medians, median_curve(section.envelope, section.name + ", medians"));
+  section.curves.emplace(CurveKind::means, mean_curve(section.envelope, section.name + ", means"));
+  section.curves.emplace(CurveKind::mean_diameters,
+                         mean_diameter_curve(curves, section.name + ", mean diameters"));
+  if (options.sieved)
+    for (const auto& [kind, curve] : section.curves) section.filled.emplace(kind, with_fines(curve, options));
 }
 
 /// The original of a picture: the grading given, or its whole slope.
@@ -165,9 +165,22 @@ double segregation_degree(const Grading& grading, const Grading& original) {
   return (grading.mean_log_diameter() - d0) / (coarsest.mean_log_diameter() - d0);
 }
 
-const std::optional<Grading>& FieldSection::curve(bool of_means, bool corrected) const {
-  if (of_means) return corrected ? mean_corrected : mean;
-  return corrected ? median_corrected : median;
+const Grading* FieldSection::curve(CurveKind kind, bool with_fines) const {
+  const auto& all = with_fines ? filled : curves;
+  const auto found = all.find(kind);
+  return found == all.end() ? nullptr : &found->second;
+}
+
+const char* curve_in_words(CurveKind kind) {
+  switch (kind) {
+    case CurveKind::medians:
+      return "medians";
+    case CurveKind::means:
+      return "means";
+    case CurveKind::mean_diameters:
+      break;
+  }
+  return "mean diameters";
 }
 
 const FieldSection* FieldAnalysis::section(const std::string& name) const {
@@ -183,7 +196,7 @@ FieldAnalysis analyse_field(const SlopeGradings& gradings, const FieldOptions& o
   out.options = options;
   for (const SlopeGradings::Picture& picture : gradings.pictures) out.pictures.push_back(picture.name);
   out.whole = section_of(gradings, 0, options);
-  if (!out.whole.median && options.original) add_curves(out.whole, {*options.original}, options);
+  if (out.whole.curves.empty() && options.original) add_curves(out.whole, {*options.original}, options);
   for (const SlopeGradings::Picture& picture : gradings.pictures) {
     const Grading* original = original_of(picture, options);
     out.d90_over_d15.push_back(original ? original->diameter(0.90) / original->diameter(0.15) : kNone);

@@ -44,19 +44,29 @@ struct FieldOptions {
   double void_ratio = 0.3;          ///< of all conductivities; drops out of ratios
 };
 
+/// Curves that can stand for a section in all pictures.
+enum class CurveKind {
+  medians,         ///< of the shares passing at a diameter
+  means,           ///< of the same
+  mean_diameters,  ///< means of the diameters at a share
+};
+inline constexpr CurveKind kCurveKinds[] = {CurveKind::medians, CurveKind::means, CurveKind::mean_diameters};
+/// "medians", "means", "mean diameters".
+const char* curve_in_words(CurveKind kind);
+
 /// One section, or the whole slope, over all pictures.
 struct FieldSection {
   std::string name;                                   ///< whole, S1 ...
   double x_over_l = 0;                                ///< middle, 0 at the crest; NaN of the whole slope
   std::map<std::string, std::vector<double>> values;  ///< by quantity: one a picture, NaN where it has none
   std::vector<EnvelopePoint> envelope;                ///< of the curves, as measured
-  std::optional<Grading> median, mean;                ///< curves of medians and of means
-  std::optional<Grading> median_corrected, mean_corrected;  ///< with fines of the sieved sample
+  std::map<CurveKind, Grading> curves;                ///< as seen
+  std::map<CurveKind, Grading> filled;                ///< with fines of the sieved sample
   OriginFit chi_fit, chi_given_fit;  ///< of chi against D90 / D15 of the original, through the origin
 
   Spread spread(const std::string& quantity) const { return spread_over(values.at(quantity)); }
-  /// The curve that stands for the section: of medians or of means, with fines or without.
-  const std::optional<Grading>& curve(bool of_means, bool corrected) const;
+  /// The curve that stands for the section, with fines or as seen; null if there is none.
+  const Grading* curve(CurveKind kind, bool with_fines) const;
 };
 
 struct FieldAnalysis {

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "analysis/field/field_tables.h"
 #include "analysis/profile_chart.h"
 #include "analysis/report_text.h"
+#include "analysis/section_canvas.h"
 
 namespace scree {
 namespace {
@@ -54,10 +56,11 @@ std::string range_of(const FieldAnalysis& field) {
 Picture draw_envelopes(const FieldAnalysis& field, const fs::path& folder) {
   const fs::path file = folder / "envelopes.svg";
   std::string common =
-      range_of(field) + "set yrange [0:100]\nset key top left reverse Left samplen 1.5 font ',11'\n";
+      range_of(field) +
+      "set yrange [0:100]\nset key bottom right reverse Left samplen 1.5 font ',10' spacing 0.9\n";
   common += "$whole << END\n";
-  if (field.whole.median)
-    for (const Grading::Point& p : field.whole.median->points())
+  if (const Grading* whole = field.whole.curve(CurveKind::medians, false))
+    for (const Grading::Point& p : whole->points())
       common += fmt::format("{} {}\n", p.diameter, 100 * p.passing);
   common += "END\n";
   const auto panel = [&](const FieldSection& section, std::string& blocks) {
@@ -92,6 +95,11 @@ std::string p_words(const NormalityTest& test) {
   return test.known ? fmt::format(", p {}", p_text(test.p)) : "";
 }
 
+/// Share of values that a bin at the middle of a normal distribution has.
+double normal_peak(double width, double std) {
+  return width / (std * std::sqrt(2 * std::numbers::pi));
+}
+
 Picture draw_histogram(const FieldAnalysis& field, const char* quantity, const fs::path& folder) {
   const fs::path file = folder / fmt::format("histogram_{}.svg", quantity);
   const FieldQuantity& what = *field_quantity(quantity);
@@ -100,13 +108,16 @@ Picture draw_histogram(const FieldAnalysis& field, const char* quantity, const f
   for (const FieldSection& section : field.sections) {
     if (!has(section, quantity)) continue;
     const Histogram bins = histogram(section.values.at(quantity), field.bin_of(quantity));
+    const MeanStd both = mean_std(section.values.at(quantity));
     most = std::max(most, bins.shares[bins.mode()]);
+    if (both.n > 1 && both.std > 0) most = std::max(most, normal_peak(bins.width, both.std));
     low = std::min(low, bins.middle(0) - bins.width / 2);
     high = std::max(high, bins.middle(bins.shares.size() - 1) + bins.width / 2);
   }
-  const std::string common =
-      fmt::format("set yrange [0:{:.3g}]\nset xrange [{:.4g}:{:.4g}]\nunset key\nset style fill solid 0.5\n",
-                  1.1 * most, low, high);
+  const std::string common = fmt::format(
+      "set yrange [0:{:.3g}]\nset xrange [{:.4g}:{:.4g}]\nset xtics {:.4g}\nunset key\nset style fill solid "
+      "0.5\n",
+      1.1 * most, low, high, round_number_above((high - low) / 6));
   const auto panel = [&](const FieldSection& section, std::string& blocks) {
     if (!has(section, quantity)) return std::string();
     const Histogram bins = histogram(section.values.at(quantity), field.bin_of(quantity));
@@ -119,7 +130,7 @@ Picture draw_histogram(const FieldAnalysis& field, const char* quantity, const f
     std::string normal;
     if (spread.moments.n > 1 && spread.moments.std > 0)
       normal = fmt::format(", {}*exp(-0.5*((x-{})/{})**2) with lines lw 1.4 lc rgb '{}'",
-                           bins.width / (spread.moments.std * std::sqrt(2 * M_PI)), spread.moments.mean,
+                           normal_peak(bins.width, spread.moments.std), spread.moments.mean,
                            spread.moments.std, kOrange);
     return fmt::format(
         "set title '{0}: n {1}{2}' offset 0,-0.6\nset xlabel '{3}' offset 0,0.6\nset ylabel 'share of "
@@ -180,7 +191,7 @@ Picture draw_chi_fit(const FieldAnalysis& field, const fs::path& folder) {
         blocks += fmt::format("{} {}\n", x[i], section.values.at(quantity)[i]);
     blocks += "END\n";
     return fmt::format(
-        "set title '{0}: slope {1:.3f}, R² {2:.2f} (about the mean {3:.2f})' offset 0,-0.6 font ',12'\n"
+        "set title '{0}: {1:.3f} x, R² {2:.2f}, about the mean {3:.2f}' offset 0,-0.6 font ',11'\n"
         "set xlabel 'D90 / D15 of the whole slope' offset 0,0.6\nset ylabel 'χ' offset 1.5,0\nset yrange "
         "[{4}:{5}]\n"
         "plot 0 with lines lc rgb '#888888', ${0} using 1:2 with points pt 7 ps 0.5 lc rgb '{6}', {1}*x with "
@@ -259,8 +270,8 @@ Picture draw_ksat(const FieldAnalysis& field, const fs::path& folder) {
 
 Picture draw_correction(const FieldAnalysis& field, const fs::path& folder) {
   const fs::path file = folder / "correction.svg";
-  const Grading &seen = *field.whole.median, &filled = *field.whole.median_corrected,
-                &sieved = *field.options.sieved;
+  const Grading &seen = *field.whole.curve(CurveKind::medians, false),
+                &filled = *field.whole.curve(CurveKind::medians, true), &sieved = *field.options.sieved;
   std::string script = chart_terminal(760, 430);
   const auto block = [&](const char* name, const Grading& grading) {
     script += fmt::format("${} << END\n", name);
@@ -297,7 +308,7 @@ std::vector<Picture> draw_field(const FieldAnalysis& field, const fs::path& fold
     pictures.push_back(draw_histogram(field, quantity, folder));
   pictures.push_back(draw_chi(field, folder));
   pictures.push_back(draw_chi_fit(field, folder));
-  if (field.options.sieved && field.whole.median_corrected)
+  if (field.whole.curve(CurveKind::medians, true) != nullptr)
     pictures.push_back(draw_correction(field, folder));
   pictures.push_back(draw_ksat(field, folder));
   return pictures;

@@ -155,12 +155,14 @@ Number passing_std(const FieldAnalysis& field, const Parts& parts) {
                 })->std);
 }
 
-// The curve that a name begins with: median, mean, medianfilled, meanfilled.
+// The curve that a name begins with: median, mean, meandiameter, and the same with "filled".
 const Grading* curve_of(const FieldAnalysis& field, const std::string& which, const std::string& section) {
   const FieldSection* at = field.section(section);
   if (at == nullptr) return nullptr;
-  const std::optional<Grading>& curve = at->curve(which.starts_with("mean"), which.ends_with("filled"));
-  return curve ? &*curve : nullptr;
+  const CurveKind kind = which.starts_with("meandiameter") ? CurveKind::mean_diameters
+                         : which.starts_with("mean")       ? CurveKind::means
+                                                           : CurveKind::medians;
+  return at->curve(kind, which.ends_with("filled"));
 }
 
 Number of_curve(const FieldAnalysis& field, const Parts& parts) {
@@ -187,7 +189,7 @@ Number conductivity(const FieldAnalysis& field, const Parts& parts) {
 
 const std::vector<Form>& forms() {
   const std::string section = "_(whole|S[0-9]+)", value = "_(-?[0-9.]+)",
-                    curve = "(median|mean|medianfilled|meanfilled)";
+                    curve = "((?:median|mean|meandiameter)(?:filled)?)";
   static const std::vector<Form> all{
       {std::regex("(.+)_(mean|std|median|min|max)" + section), statistic},
       {std::regex("(.+)_(mode|modefrequency)" + section), mode},

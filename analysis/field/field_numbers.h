@@ -21,7 +21,8 @@ namespace scree {
 ///   QUANTITY_place_VALUE                                      x/L where means reach VALUE, linear between
 ///   chi_fit_SECTION, chi_r2_SECTION, chigiven_fit_, _r2_      chi over D90 / D15, through the origin
 ///   passingstd_max_SECTION, passingstd_at_DIAMETER_SECTION    deviation of the share passing over pictures
-///   median_D_SECTION, mean_D_, medianfilled_D_, meanfilled_D_ D: d10, cu ... of that curve
+///   median_D_SECTION, mean_D_, meandiameter_D_                D: d10, cu ... of that curve (CurveKind)
+///   medianfilled_D_SECTION, ...                               of that curve with fines
 ///   median_share_LOW_HIGH_SECTION, ...                        share of that curve between diameters (m)
 ///   medianfilled_kcm_SECTION, _taylor_, ...                   conductivity of that curve over that of the
 ///   whole

@@ -116,12 +116,13 @@ std::string ksat_table(const FieldAnalysis& field) {
         "<tr><td class=\"word\">{}</td><td class=\"word\">{}, "
         "{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>"
         "<td>{}</td><td>{}</td></tr>\n",
-        r.section, r.means ? "means" : "medians", r.filled ? "with fines" : "as seen", any_size(r.d10),
+        r.section, curve_in_words(r.kind), r.filled ? "with fines" : "as seen", any_size(r.d10),
         any_size(r.d50), number_text(r.cu), any_size(r.kozeny_carman_rel), any_size(r.taylor_rel),
         any_size(r.taylor_rel_square), any_size(100 * r.kozeny_carman), any_size(r.kozeny_carman),
         any_size(r.taylor));
   return fmt::format(
-             "<h2>Hydraulic conductivity</h2>\n<p>Of the curves of medians and of means of each section, "
+             "<h2>Hydraulic conductivity</h2>\n<p>Of the curves that can stand for a section in all pictures "
+             "(medians or means of the shares passing, means of the diameters), "
              "over that of the whole slope, at equal "
              "void ratio; and as numbers at a void ratio of {}. The modified Kozeny-Carman formula gives "
              "cm/s for D10 in cm and the unit weight in "
@@ -222,12 +223,13 @@ std::vector<std::string> field_in_words(const FieldAnalysis& field, const std::v
       lines.push_back(fmt::format("conductivity of {} over {} by {}: {:.2g} to {:.3g}, median {:.2g}",
                                   toe.name, crest.name, words, s.min, s.max, s.median));
   }
-  if (field.whole.median && field.whole.median_corrected)
-    lines.push_back(
-        fmt::format("fines: Cu of the whole slope {:.1f} as seen, {:.1f} with what is below {:.3g} m; D10 "
-                    "{:.3g} and {:.2g} m",
-                    field.whole.median->cu(), field.whole.median_corrected->cu(), field.options.limit,
-                    field.whole.median->diameter(0.1), field.whole.median_corrected->diameter(0.1)));
+  const Grading *seen = field.whole.curve(CurveKind::medians, false),
+                *filled = field.whole.curve(CurveKind::medians, true);
+  if (seen != nullptr && filled != nullptr)
+    lines.push_back(fmt::format(
+        "fines: Cu of the whole slope {:.1f} as seen, {:.1f} with what is below {:.3g} m; D10 {:.3g} and "
+        "{:.2g} m",
+        seen->cu(), filled->cu(), field.options.limit, seen->diameter(0.1), filled->diameter(0.1)));
   if (!printed.empty()) {
     std::map<PrintedVerdict, int> count;
     for (const HeldValue& held : printed) ++count[held.verdict];

@@ -102,7 +102,7 @@ std::string conductivities(const FieldAnalysis& field) {
       "section,curve,fines,d10_m,d50_m,cu,void_ratio,ksat_kcm_cm_per_s,ksat_kcm_m_per_s,ksat_taylor_m_per_s,"
       "ksat_kcm_rel,ksat_taylor_rel,ksat_taylor_rel_square\n";
   for (const ConductivityRow& r : conductivity_rows(field))
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.section, r.means ? "means" : "medians",
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.section, curve_in_words(r.kind),
                         r.filled ? "sieved" : "as seen", number(r.d10), number(r.d50), number(r.cu),
                         number(field.options.void_ratio), number(100 * r.kozeny_carman),
                         number(r.kozeny_carman), number(r.taylor), number(r.kozeny_carman_rel),
@@ -146,12 +146,12 @@ std::vector<ConductivityRow> conductivity_rows(const FieldAnalysis& field) {
   std::vector<ConductivityRow> rows;
   const double e = field.options.void_ratio;
   for (const bool filled : {false, true})
-    for (const bool means : {false, true})
+    for (const CurveKind kind : kCurveKinds)
       for (const FieldSection* section : parts_of(field)) {
-        const auto &curve = section->curve(means, filled), &whole = field.whole.curve(means, filled);
-        if (!curve || !whole) continue;
+        const Grading *curve = section->curve(kind, filled), *whole = field.whole.curve(kind, filled);
+        if (curve == nullptr || whole == nullptr) continue;
         const PoreMaterial here = pore_material(*curve, e), there = pore_material(*whole, e);
-        rows.push_back({section->name, means, filled, here.d10, here.d50, here.cu,
+        rows.push_back({section->name, kind, filled, here.d10, here.d50, here.cu,
                         conductivity_kozeny_carman(here), conductivity_taylor(here),
                         conductivity_ratio_kozeny_carman(here, there), conductivity_ratio_taylor(here, there),
                         conductivity_ratio_taylor(here, there, 2)});
@@ -183,14 +183,14 @@ void write_field_tables(const FieldAnalysis& field, const std::vector<HeldValue>
   write_text_file(folder / "ksat.csv", conductivities(field));
   if (has(field.sections.front(), "chi_given")) write_text_file(folder / "chi_given.csv", given_chi(field));
   if (!printed.empty()) write_text_file(folder / "printed.csv", printed_table(printed));
-  if (field.whole.median)
+  if (const Grading* seen = field.whole.curve(CurveKind::medians, false))
     write_text_file(folder / "median_whole.csv",
-                    grading_file(*field.whole.median, "Medians over pictures of the shares passing."));
-  if (field.whole.median_corrected)
-    write_text_file(folder / "corrected_whole.csv",
-                    grading_file(*field.whole.median_corrected,
-                                 fmt::format("Medians over pictures; below {:.6g} m as the sieved sample.",
-                                             field.options.limit)));
+                    grading_file(*seen, "Medians over pictures of the shares passing."));
+  if (const Grading* filled = field.whole.curve(CurveKind::medians, true))
+    write_text_file(
+        folder / "corrected_whole.csv",
+        grading_file(*filled, fmt::format("Medians over pictures; below {:.6g} m as the sieved sample.",
+                                          field.options.limit)));
 }
 
 }  // namespace scree

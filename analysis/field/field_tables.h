@@ -11,7 +11,8 @@ namespace scree {
 /// A curve that stands for a section, its conductivity, and that over the whole slope's.
 struct ConductivityRow {
   std::string section;
-  bool means = false, filled = false;    ///< curve of means or medians; with fines of the sieved sample
+  CurveKind kind = CurveKind::medians;
+  bool filled = false;                   ///< with fines of the sieved sample
   double d10 = 0, d50 = 0, cu = 0;       ///< m, m, -
   double kozeny_carman = 0, taylor = 0;  ///< m/s
   double kozeny_carman_rel = 0;

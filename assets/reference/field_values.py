@@ -19,8 +19,10 @@ VALUES = [
     ('d10_median_whole', 'median D10 of the slopes', P, CASE, 'd10_orig', 'whole', 'median', '1166', 'value'),
     ('median_cu_whole', 'Cu of the median curve', P, CASE, 'cu_orig', 'whole', 'eq', '1166', 'value'),
     ('mean_cu_whole', 'Cu of the mean curve', P, CASE, 'cu_orig', 'whole', 'eq', '1166', 'value'),
+    ('meandiameter_cu_whole', 'Cu of the curve of mean diameters', P, CASE, 'cu_orig', 'whole', 'eq', '1166', 'value'),
     ('median_cc_whole', 'Cc of the median curve', P, CASE, 'cc_orig', 'whole', 'eq', '1166', 'value'),
     ('mean_cc_whole', 'Cc of the mean curve', P, CASE, 'cc_orig', 'whole', 'eq', '1166', 'value'),
+    ('meandiameter_cc_whole', 'Cc of the curve of mean diameters', P, CASE, 'cc_orig', 'whole', 'eq', '1166', 'value'),
     ('median_share_1.3_9_whole', 'share above 1.3 m; median curve', C, CURVE, 'share_above_130cm', None, 'eq', '1166', 'value'),
     ('mean_share_1.3_9_whole', 'share above 1.3 m; mean curve', C, CURVE, 'share_above_130cm', None, 'eq', '1166', 'value'),
     ('median_share_1_9_whole', 'share above 1 m; median curve', C, CURVE, 'share_above_100cm', None, 'eq', '1166', 'value'),
@@ -78,6 +80,7 @@ VALUES = [
     # Conductivity: over pictures as seen; of curves with fines.
     *[('ksat_%s_rel_ratio%s_S1_S6' % (f, e), '%s conductivity of S6 over S1; %s' % (w, n), P, CASE, 'ksat_ratio_bottom_top_' + f, 'S6/S1', e, '1273', 'value')
       for f, n in (('kcm', 'Kozeny-Carman'), ('taylor', 'Taylor')) for e, w in (('min', 'smallest'), ('max', 'largest'))],
-    *[('%sfilled_%s_%s' % (c, f, s), 'conductivity of %s over the whole with fines; %s; %s curves' % (s, n, c), P, CASE, 'ksat_rel_' + f, s, None, '1292', 'value')
-      for f, n in (('kcm', 'Kozeny-Carman'), ('taylor', 'Taylor')) for s in ('S1', 'S6') for c in ('median', 'mean')],
+    *[('%sfilled_%s_%s' % (c, f, s), 'conductivity of %s over the whole with fines; %s; curves of %s' % (s, n, w), P, CASE, 'ksat_rel_' + f, s, None, '1292', 'value')
+      for f, n in (('kcm', 'Kozeny-Carman'), ('taylor', 'Taylor')) for s in ('S1', 'S6')
+      for c, w in (('median', 'medians'), ('mean', 'means'), ('meandiameter', 'mean diameters'))],
 ]

@@ -27,7 +27,6 @@ TEST(ConductivityTable, SectionsToeOverCrestAndCells) {
   result.seeds.push_back(fake_seed(1));
   SeedResult& seed = result.seeds.front();
   VerticalSection section;
-  section.ground = [](double) { return -1.0; };
   section.half_width = 4;
   section.cell = 2;
   seed.inside = analyse_inside(seed.final_state.grains, {}, seed.original, section);

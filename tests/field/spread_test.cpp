@@ -52,8 +52,12 @@ TEST(AndersonDarling, TellsSkewFromNormal) {
     std::vector<double> stretched;
     for (const double value : normal_quantiles(30)) stretched.push_back(std::exp(power * value / 6));
     const NormalityTest test = anderson_darling(stretched);
-    if (std::abs(test.statistic - 0.752) > 0.01) EXPECT_EQ(test.p<0.05, test.statistic> 0.752) << power;
-    if (std::abs(test.statistic - 1.035) > 0.01) EXPECT_EQ(test.p<0.01, test.statistic> 1.035) << power;
+    if (std::abs(test.statistic - 0.752) > 0.01) {
+      EXPECT_EQ(test.p<0.05, test.statistic> 0.752) << power;
+    }
+    if (std::abs(test.statistic - 1.035) > 0.01) {
+      EXPECT_EQ(test.p<0.01, test.statistic> 1.035) << power;
+    }
   }
 }
 
