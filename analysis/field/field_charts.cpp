@@ -254,8 +254,7 @@ Picture draw_ksat(const FieldAnalysis& field, const fs::path& folder) {
             "\nunset logscale y\nset logscale x\nset format y\nset format x '%g'\nset xrange [*:*]\nset "
             "yrange [0:1]\n";
   script += fmt::format(
-      "set title {}\nset xlabel '{} over {}'\nset ylabel 'share of the pictures below'\nset key bottom "
-      "right\n",
+      "set title {}\nset xlabel '{} over {}'\nset ylabel 'share of the pictures below'\nset key top left\n",
       gnuplot_quoted("Toe over crest, picture by picture, as seen"), field.sections.back().name,
       field.sections.front().name);
   plots.clear();
