@@ -19,20 +19,6 @@ struct RunOptions {
   bool summary_only = false;  ///< no report, no pictures
 };
 
-struct FieldCliOptions {
-  std::filesystem::path gradings;  ///< table by image and section
-  std::filesystem::path original;  ///< grading of the rock as dumped; empty: each picture's whole slope
-  std::filesystem::path sieved;    ///< grading of the fines, with
-  std::string limit;               ///< below which it counts, "0.1m"
-  double void_ratio = 0.3;
-  std::filesystem::path printed;         ///< values to hold ours against
-  std::filesystem::path scenario;        ///< of the dataset; empty: none is written
-  std::vector<std::string> observables;  ///< of the dataset; empty: chi
-  bool thesis = false;                   ///< take the files of the thesis where none is given
-  std::filesystem::path out;             ///< empty: runs/NAME
-  bool force = false;                    ///< write into a folder that is not empty
-};
-
 struct SweepOptions {
   std::filesystem::path file;
   std::filesystem::path store;  ///< empty: runs/store.sqlite
@@ -141,7 +127,6 @@ int run_run(const RunOptions& options);
 int run_compare(const std::filesystem::path& dir, const std::vector<std::string>& cases);
 int run_validate(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 int run_schema();
-int run_field(const FieldCliOptions& options);
 int run_effects(const EffectsOptions& options);
 int run_calibrate(const CalibrateOptions& options);
 int run_predict(const PredictOptions& options);

@@ -5,6 +5,7 @@
 #include <regex>
 
 #include "analysis/field/field_analysis.h"
+#include "analysis/field/field_analysis.h"
 #include "analysis/field/field_report.h"
 #include "analysis/field/printed_values.h"
 #include "analysis/output_units.h"

@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "cli/commands.h"
+#include "cli/field.h"
 #include "scree_version.h"
 
 volatile std::sig_atomic_t interrupted = 0;
