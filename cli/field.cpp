@@ -1,10 +1,11 @@
 // scree field: gradings of a slope's sections in many pictures: statistics, fines, conductivity, a dataset.
+#include "cli/field.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
 #include <regex>
 
-#include "analysis/field/field_analysis.h"
 #include "analysis/field/field_analysis.h"
 #include "analysis/field/field_report.h"
 #include "analysis/field/printed_values.h"
@@ -89,9 +90,11 @@ int write_dataset_of(const FieldCliOptions& options, const scree::FieldAnalysis&
   const fs::path folder = options.out / "dataset";
   fs::create_directories(folder);
   std::vector<std::string> notes;
-  scree::FieldDatasetRequest request{options.scenario, options.gradings.filename().string(),
-                                     options.observables};
-  request.own_sections = loaded.scenario.output.sections == sections;
+  scree::FieldDatasetRequest request{
+      options.scenario, {}, options.gradings.filename().string(), options.observables};
+  // The pile must be cut as the pictures are; that changes how it is looked at, not how it is made.
+  if (loaded.scenario.output.sections != sections)
+    request.overrides.push_back(fmt::format("output.sections={}", sections));
   try {
     notes = scree::write_field_dataset(field, request, folder);
   } catch (const std::invalid_argument& error) {

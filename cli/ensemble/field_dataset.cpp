@@ -4,7 +4,9 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include "cli/ensemble/dataset_write.h"
 
@@ -18,7 +20,7 @@ struct Column {
   MeanStd moments;
 };
 
-/// chi of S2 -> chi_S2, d50_m of S2 -> d50_m_S2; the quantity without the unit of an output's name.
+/// chi of S2 -> chi_S2, d50_m of S2 -> d50_m_S2: names of outputs carry their unit.
 std::vector<Column> columns_of(const FieldAnalysis& field, const FieldDatasetRequest& request) {
   std::vector<Column> columns;
   const std::vector<std::string> wanted =
@@ -31,10 +33,7 @@ std::vector<Column> columns_of(const FieldAnalysis& field, const FieldDatasetReq
       throw std::invalid_argument(
           fmt::format("--observables {}: pictures give chi, d10_m ... d95_m, d10_rel ... d95_rel", name));
     for (const FieldSection& section : field.sections) {
-      Column column{fmt::format("{}_{}{}", name, section.name,
-                                request.own_sections ? "" : fmt::format("of{}", field.sections.size())),
-                    section.values.at(quantity),
-                    {}};
+      Column column{fmt::format("{}_{}", name, section.name), section.values.at(quantity), {}};
       column.moments = mean_std(column.values);
       if (column.moments.n > 1 && column.moments.std > 0) columns.push_back(std::move(column));
     }
@@ -69,7 +68,7 @@ std::vector<std::string> write_field_dataset(const FieldAnalysis& field, const F
   DatasetDraft draft;
   draft.title = fmt::format("Slope in {} pictures", field.pictures.size());
   draft.source = "scree field " + request.source;
-  DatasetDraft::Experiment experiment{"slope", request.scenario, {}, {}};
+  DatasetDraft::Experiment experiment{"slope", request.scenario, request.overrides, {}};
   for (const Column& column : columns) experiment.observables[column.name] = column.moments;
   draft.experiments.push_back(std::move(experiment));
   if (const auto correlation = correlations(columns, field.pictures.size())) {

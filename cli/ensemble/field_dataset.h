@@ -10,9 +10,9 @@ namespace scree {
 
 struct FieldDatasetRequest {
   std::filesystem::path scenario;        ///< that simulates the slope
+  std::vector<std::string> overrides;    ///< of it, "key=value"
   std::string source;                    ///< where the numbers come from
   std::vector<std::string> observables;  ///< chi, d50_m, d50_rel ...; empty: chi
-  bool own_sections = true;              ///< the scenario's own number of sections; else chi_S1of6
 };
 
 /// Writes dataset.yaml, observables.csv and covariance.csv: mean and deviation over pictures of each quantity
