@@ -9,6 +9,7 @@ namespace scree {
 namespace {
 
 constexpr double kGeometry = 0.1;        // C_G, with the units of the source
+constexpr double kTaylor = 0.004;        // C_1
 constexpr double kTortuosity = 2;        // x
 constexpr double kUnitWeight = 9.789;    // of water at 20 C, kN/m3
 constexpr double kViscosity = 1.002e-3;  // of water at 20 C, Pa s
@@ -29,9 +30,9 @@ void check(const PoreMaterial& m) {
 }
 
 /// Taylor's formula but for its constant and the properties of water, which drop out of a ratio.
-double taylor(const PoreMaterial& m) {
+double taylor(const PoreMaterial& m, double power) {
   check(m);
-  return std::pow(m.d50, 1.5) * std::pow(m.void_ratio, 3) / (1 + m.void_ratio);
+  return std::pow(m.d50, power) * std::pow(m.void_ratio, 3) / (1 + m.void_ratio);
 }
 
 }  // namespace
@@ -53,8 +54,12 @@ double conductivity_ratio_kozeny_carman(const PoreMaterial& material, const Pore
   return conductivity_kozeny_carman(material) / conductivity_kozeny_carman(original);
 }
 
-double conductivity_ratio_taylor(const PoreMaterial& material, const PoreMaterial& original) {
-  return taylor(material) / taylor(original);
+double conductivity_taylor(const PoreMaterial& m) {
+  return kTaylor * (1000 * kUnitWeight / kViscosity) * taylor(m, 2);
+}
+
+double conductivity_ratio_taylor(const PoreMaterial& material, const PoreMaterial& original, double power) {
+  return taylor(material, power) / taylor(original, power);
 }
 
 }  // namespace scree

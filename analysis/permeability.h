@@ -27,8 +27,21 @@ double conductivity_kozeny_carman(const PoreMaterial& material);
 /// Conductivity of `material` over that of `original` by the modified Kozeny-Carman formula. Throws as above.
 double conductivity_ratio_kozeny_carman(const PoreMaterial& material, const PoreMaterial& original);
 
-/// Conductivity of `material` over that of `original` after Taylor, Fundamentals of Soil Mechanics (1948), as
-/// the thesis's printed ratios follow it: k proportional to D50^1.5 e^3 / (1 + e). Throws as above.
-double conductivity_ratio_taylor(const PoreMaterial& material, const PoreMaterial& original);
+/// Saturated hydraulic conductivity (m/s) for water of 20 C after Taylor, Fundamentals of Soil Mechanics
+/// (1948),
+///
+///     k = C_1 (gamma_w / mu_w) e^3 / (1 + e) D50^2,   C_1 = 0.004, all in SI units.
+///
+/// C_1 is that of the thesis and has no unit: it lies near the 1 / 180 of Kozeny and Carman for spheres.
+/// Throws as above.
+double conductivity_taylor(const PoreMaterial& material);
+
+/// The power of the diameter in the thesis's printed ratios. With it C_1 would have to be a root of a length.
+inline constexpr double kThesisTaylorPower = 1.5;
+
+/// Conductivity of `material` over that of `original` by Taylor's formula, with another power of D50 than its
+/// own 2. Throws as above.
+double conductivity_ratio_taylor(const PoreMaterial& material, const PoreMaterial& original,
+                                 double power = kThesisTaylorPower);
 
 }  // namespace scree

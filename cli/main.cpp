@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "cli/commands.h"
+#include "cli/field.h"
 #include "scree_version.h"
 
 volatile std::sig_atomic_t interrupted = 0;
@@ -28,6 +29,7 @@ Examples:
   scree study scenarios/studies/disposal_qb.yaml         ways to dispose of a rock, ranked
   scree calibrate scenarios/calibrations/lab_angle.yaml  friction from a measured repose angle
   scree compare runs/canadian_malartic_10m               the comparison of a run, as a table
+  scree field --thesis                                   gradings of slopes in pictures: statistics, fines, conductivity
   scree analyse heap.csv --scenario scenarios/repose_lab.yaml   what a pile of another program gives
   scree diagnose data.yaml --model model.yaml            which effect the model lacks, if any
   scree validate scenarios/a1_10m.yaml                   check a file without running it
@@ -283,6 +285,32 @@ int main(int argc, char** argv) {
       "--out "
       "measured\n");
 
+  FieldCliOptions field;
+  CLI::App* field_app = app.add_subcommand(
+      "field", "Gradings of a slope's sections in many pictures: statistics, fines, conductivity, a dataset");
+  field_app->add_option("gradings", field.gradings,
+                        "Table by image and section (CSV): diameters D_x, passing curves, or grains");
+  field_app->add_option("--original", field.original,
+                        "Grading of the rock as dumped; default: each picture's whole slope, section 0");
+  field_app->add_option("--sieved", field.sieved, "Grading of a sieved sample, for what pictures do not see");
+  field_app->add_option("--limit", field.limit,
+                        "Diameter below which the sieved sample counts: 0.1m, 25.4cm");
+  field_app->add_option("--void-ratio", field.void_ratio, "Of all conductivities; drops out of their ratios")
+      ->capture_default_str();
+  field_app->add_option("--printed", field.printed, "Table of printed values to hold ours against");
+  field_app->add_option("--scenario", field.scenario, "Scenario that simulates the slope: writes a dataset");
+  field_app->add_option("--observables", field.observables, "Of the dataset, in each section; default: chi")
+      ->delimiter(',');
+  field_app->add_flag("--thesis", field.thesis,
+                      "Take the pictures, the sample and the printed values of the thesis");
+  field_app->add_option("--out", field.out, "Folder for the results; default: a free runs/NAME");
+  field_app->add_flag("--force", field.force, "Write into --out even if it holds something");
+  field_app->footer(
+      "\nExamples:\n  scree field --thesis\n  scree field gradings.csv --sieved assets/gradings/G0.csv "
+      "--limit "
+      "25.4cm\n  scree field gradings.csv --scenario scenarios/canadian_malartic_10m.yaml --observables "
+      "chi,d50_m\n");
+
   EffectsOptions effects;
   CLI::App* effects_app = app.add_subcommand(
       "effects", "Physics and measurement that a scenario can switch on: all, or everything about one");
@@ -302,7 +330,7 @@ int main(int argc, char** argv) {
     if (names_one && app.get_subcommands().empty()) {
       fmt::print(stderr,
                  "scree: {}: no such subcommand; there are run, sweep, reproduce, study, calibrate, predict, "
-                 "compare, analyse, diagnose, twin, validate, effects and schema\n",
+                 "compare, analyse, field, diagnose, twin, validate, effects and schema\n",
                  argv[1]);
       return kBadInput;
     }
@@ -324,6 +352,7 @@ int main(int argc, char** argv) {
     if (*compare_app) return run_compare(compare_dir, compare_cases);
     if (*validate_app) return run_validate(validate_file, validate_overrides);
     if (*analyse_app) return run_analyse(analyse);
+    if (*field_app) return run_field(field);
     if (*diagnose_app) return run_diagnose(diagnose);
     if (*twin_app) return run_twin(twin);
 

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <thread>
 
+#include "analysis/conductivity_table.h"
 #include "analysis/report.h"
 #include "analysis/summary.h"
 #include "cli/commands.h"
@@ -167,6 +168,7 @@ int run_run(const RunOptions& options) {
                           scree::read_reference(asset_dir() / "reference" / "results.csv"), wall);
   scree::write_summary(result, out / "summary.json");
   scree::write_sections_csv(result, out / "sections.csv");
+  scree::write_conductivity_csv(result, out / "ksat.csv");
   if (!options.summary_only) {
     scree::SceneFacts scene;
     if (const scree::BenchSpec* bench = scree::bench_of(scenario)) scene.bench_slope = bench->slope_deg;

@@ -4,7 +4,8 @@
     extract.py TABLES [OUTPUT]
 
 TABLES is the folder of CSV tables extracted from the thesis; OUTPUT defaults to the folder of this script.
-Writes results.csv and trends.csv (SI units; columns in README.md) and copies the tables that the tests read as they are.
+Writes results.csv, trends.csv and field.csv (SI units; columns in README.md), copies the tables that the tests read as
+they are, and writes the gradings of the slopes in pictures to ../field (of OUTPUT).
 """
 import csv
 import itertools
@@ -13,6 +14,8 @@ import re
 import shutil
 import statistics
 import sys
+
+import field_values
 
 COPIES = ['psd_constraints.csv', 'lab_repose_pfc3d_summary.csv', 'lab_segregation_pfc3d_psd.csv',
           'model_parameters.csv']
@@ -225,6 +228,44 @@ def repose(tables, out):
                 deviation('cm_mine', 'repose_angle_std'), 'deg', 'eq', line('cm_mine', 'repose_angle'))
 
 
+FIELD_UNITS = {'per_xl': ('-', 1)}
+FIELD_COLUMNS = ['name', 'what', 'value', 'unit', 'relation', 'rounding', 'source']
+
+
+def field(tables):
+    """Printed values of the pictures of Canadian Malartic under the names of the program's own numbers."""
+    files = {name: rows(tables, name) for name in (field_values.P, field_values.C)}
+    for name, what, file, case, quantity, section, relation, line, column in field_values.VALUES:
+        found = [r for r in files[file] if case in (r.get('case'), r.get('curve')) and r['quantity'] == quantity
+                 and section in (None, r.get('section_or_xl')) and relation in (None, r['relation'])
+                 and line in (None, r['source_line']) and r.get('kind', 'measured') == 'measured']
+        assert len(found) == 1, (name, len(found))
+        text, (unit, factor) = found[0][column], FIELD_UNITS.get(found[0]['unit']) or UNITS[found[0]['unit']]
+        yield dict(zip(FIELD_COLUMNS, (name, what, '%.6g' % (float(text) * factor), unit,
+                                       'approx' if found[0]['relation'] == 'approx' else 'eq',
+                                       '%.6g' % (half_of_last_digit(text) * factor), 'line ' + found[0]['source_line'])))
+
+
+# Ends of the curves, which tables C.8 to C.14 do not have; the same as those of assets/gradings/CM0.csv.
+FINEST_CM, COARSEST_OVER_D95 = 4.5, 1.03
+DIAMETERS = (10, 15, 30, 50, 60, 80, 90, 95)
+
+
+def field_gradings(tables, output):
+    chi = {(r['image'], r['section']): r['chi'] for r in rows(tables, 'cm_field_segregation_degree.csv')}
+    with open(output, 'w', newline='') as stream:
+        stream.write('# Canadian Malartic: gradings of a slope of 10 m in 42 pictures, and of its six sections from the crest.\n'
+                     '# Waste rock segregation thesis (Qiu, Polytechnique Montreal), tables C.8 to C.14; chi: table C.7. Made by\n'
+                     '# ../reference/extract.py. D0 and D100 are not printed: every curve begins at %g cm and ends at %g D95.\n'
+                     % (FINEST_CM, COARSEST_OVER_D95))
+        writer = csv.writer(stream, lineterminator='\n')
+        writer.writerow(['image', 'section', 'd0_cm', *['d%d_cm' % q for q in DIAMETERS], 'd100_cm', 'chi'])
+        for r in rows(tables, 'cm_field_grading.csv'):
+            writer.writerow([r['image'], 'S' + r['section'] if r['section'] != '0' else 'whole', '%g' % FINEST_CM,
+                             *[r['d%d_cm' % q] for q in DIAMETERS],
+                             '%.4g' % (COARSEST_OVER_D95 * float(r['d95_cm'])), chi.get((r['image'], r['section']), '')])
+
+
 def main():
     if len(sys.argv) < 2:
         sys.exit(__doc__)
@@ -241,6 +282,12 @@ def main():
         writer = csv.DictWriter(stream, TREND_COLUMNS, lineterminator='\n')
         writer.writeheader()
         writer.writerows(trends(tables))
+    with open(output / 'field.csv', 'w', newline='') as stream:
+        writer = csv.DictWriter(stream, FIELD_COLUMNS, lineterminator='\n')
+        writer.writeheader()
+        writer.writerows(field(tables))
+    (output.parent / 'field').mkdir(exist_ok=True)
+    field_gradings(tables, output.parent / 'field' / 'canadian_malartic.csv')
     for name in COPIES:
         shutil.copyfile(tables / name, output / name)
 

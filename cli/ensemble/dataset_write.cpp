@@ -22,6 +22,18 @@ std::string in_quotes(const std::string& text) {
   return out + "\"";
 }
 
+std::string covariance_table(const DatasetDraft::Covariance& covariance) {
+  std::string table = fmt::format("name,{}\n", fmt::join(covariance.names, ","));
+  for (std::size_t i = 0; i < covariance.names.size(); ++i) {
+    table += covariance.names[i];
+    for (std::size_t k = 0; k < covariance.names.size(); ++k)
+      table += fmt::format(",{:.12g}",
+                           covariance.matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)));
+    table += '\n';
+  }
+  return table;
+}
+
 }  // namespace
 
 std::vector<std::string> write_dataset(const DatasetDraft& draft, const fs::path& folder) {
@@ -58,6 +70,10 @@ std::vector<std::string> write_dataset(const DatasetDraft& draft, const fs::path
     }
   }
   yaml += "observables: observables.csv\n";
+  if (draft.covariance) {
+    yaml += "covariance: covariance.csv\n";
+    write_text_file(folder / "covariance.csv", covariance_table(*draft.covariance));
+  }
   if (draft.relative_uncertainty)
     yaml += fmt::format("default_relative_uncertainty: {:g}\n", *draft.relative_uncertainty);
   write_text_file(folder / "observables.csv", table);

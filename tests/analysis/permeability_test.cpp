@@ -14,6 +14,20 @@ TEST(Permeability, KozenyCarmanByHand) {
   EXPECT_NEAR(conductivity_kozeny_carman({0.001, 0.006, 8, 0.5}), 0.40706e-2, 1e-6);
 }
 
+TEST(Permeability, KozenyCarmanInSiUnitsHasATenthOfItsConstant) {
+  // 0.01 (gamma / mu) with gamma in N/m3 and D10 in m gives the same m/s as 0.1 with kN/m3, cm and cm/s.
+  const double e = 0.4, cu = 12, d10 = 0.003;
+  const double si = 0.01 * (9789 / 1.002e-3) * std::pow(e, 5) / (1 + e) * std::cbrt(cu) * d10 * d10;
+  EXPECT_NEAR(conductivity_kozeny_carman({d10, 0.02, cu, e}), si, 1e-12 * si);
+}
+
+TEST(Permeability, TaylorLiesNearKozenyAndCarmanForSpheres) {
+  // One size: k = (gamma / mu) D^2 / 180 e^3 / (1 + e) (Carman 1937); 1 / 180 = 0.0056 against 0.004.
+  const double e = 0.6, d = 0.002;
+  const double carman = 9789 / 1.002e-3 * d * d / 180 * std::pow(e, 3) / (1 + e);
+  EXPECT_NEAR(conductivity_taylor({d, d, 1, e}) / carman, 0.72, 1e-3);
+}
+
 TEST(Permeability, SandIsAsHazenSays) {
   // Hazen (1911) for loose clean sand: k = 100 D10^2 in cm/s with D10 in cm; here 0.02 cm.
   const double hazen = 100 * 0.02 * 0.02 / 100;  // m/s
@@ -28,6 +42,8 @@ TEST(Permeability, RatiosFollowTheirPowers) {
   coarse.d10 *= 2, coarse.d50 *= 2;
   EXPECT_NEAR(conductivity_ratio_kozeny_carman(coarse, original), 4, 1e-12);
   EXPECT_NEAR(conductivity_ratio_taylor(coarse, original), std::pow(2, 1.5), 1e-12);
+  EXPECT_NEAR(conductivity_ratio_taylor(coarse, original, 2), 4, 1e-12);
+  EXPECT_NEAR(conductivity_taylor(coarse) / conductivity_taylor(original), 4, 1e-12);
 
   PoreMaterial graded = original;
   graded.cu *= 8;

@@ -41,7 +41,7 @@ TEST_F(Cli, RunWritesWhatItPromises) {
   const Called run = call("run " + small + " --seeds 2 --out " + out.string());
   ASSERT_EQ(run.code, 0) << run.text;
   for (const char* name :
-       {"scenario.yaml", "summary.json", "sections.csv", "report.html", "seed_10001/particles.h5",
+       {"scenario.yaml", "summary.json", "sections.csv", "ksat.csv", "report.html", "seed_10001/particles.h5",
         "seed_10001/particles.xdmf", "seed_10001/particles.xyz", "seed_10002/particles.h5"})
     EXPECT_GT(fs::file_size(out / name), 100u) << name;
   const auto summary = nlohmann::json::parse(slurp(out / "summary.json"));

@@ -1,0 +1,138 @@
+// scree field: gradings of a slope's sections in many pictures: statistics, fines, conductivity, a dataset.
+#include "cli/field.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <regex>
+
+#include "analysis/field/field_analysis.h"
+#include "analysis/field/field_report.h"
+#include "analysis/field/printed_values.h"
+#include "analysis/output_units.h"
+#include "cli/commands.h"
+#include "cli/ensemble/dataset_file.h"
+#include "cli/ensemble/field_dataset.h"
+#include "cli/output_folder.h"
+#include "sim/io/input_text.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A length with its unit, as "0.1m", "254 mm" or, in metres, "0.1"; NaN if it is none.
+double length_in(const std::string& text) {
+  static const std::regex form("\\s*([0-9.eE+-]+)\\s*([a-z]*)\\s*");
+  std::smatch parts;
+  if (!std::regex_match(text, parts, form)) return NAN;
+  const auto number = scree::number_in(parts[1].str());
+  const auto factor = scree::unit_factor(parts[2], "m");
+  return number && factor && *number > 0 ? *number * *factor : NAN;
+}
+
+/// The options with the files that the thesis's chapter was made from.
+FieldCliOptions with_thesis(FieldCliOptions options) {
+  if (!options.thesis) return options;
+  const auto take = [](fs::path& path, const fs::path& file) {
+    if (path.empty()) path = file;
+  };
+  take(options.gradings, asset_dir() / "field" / "canadian_malartic.csv");
+  take(options.sieved, asset_dir() / "gradings" / "G0.csv");
+  take(options.printed, asset_dir() / "reference" / "field.csv");
+  if (options.limit.empty()) options.limit = "0.254m";
+  return options;
+}
+
+/// Every input of the command, read and checked.
+struct Inputs {
+  scree::SlopeGradings gradings;
+  scree::FieldOptions options;
+  std::vector<scree::PrintedValue> printed;
+};
+
+/// None, with a message, if something is wrong.
+std::optional<Inputs> read_inputs(const FieldCliOptions& options) {
+  const auto refuse = [](const std::string& message) {
+    fmt::print(stderr, "{}\n", message);
+    return std::nullopt;
+  };
+  if (options.gradings.empty()) return refuse("scree: a table of gradings is needed, or --thesis");
+  if (options.sieved.empty() != options.limit.empty())
+    return refuse(
+        "--sieved and --limit belong together: a grading file, and the diameter below which it counts");
+  if (!(options.void_ratio > 0 && options.void_ratio < 100))
+    return refuse(fmt::format("--void-ratio {}: must be above 0", options.void_ratio));
+  if (!options.observables.empty() && options.scenario.empty())
+    return refuse("--observables: a dataset names the scenario that simulates it: --scenario FILE");
+  Inputs inputs;
+  inputs.options.void_ratio = options.void_ratio;
+  if (!options.limit.empty()) {
+    inputs.options.limit = length_in(options.limit);
+    if (!std::isfinite(inputs.options.limit))
+      return refuse(fmt::format("--limit {}: is no length above 0, like 0.1m or 25.4cm", options.limit));
+  }
+  try {
+    inputs.gradings = scree::read_slope_gradings(options.gradings);
+    if (!options.original.empty()) inputs.options.original = scree::read_grading(options.original);
+    if (!options.sieved.empty()) inputs.options.sieved = scree::read_grading(options.sieved);
+    if (!options.printed.empty()) inputs.printed = scree::read_printed_values(options.printed);
+  } catch (const std::runtime_error& error) {
+    return refuse(error.what());
+  }
+  return inputs;
+}
+
+/// Writes dataset/ and reads it again; what a user gets is what diagnose would get.
+int write_dataset_of(const FieldCliOptions& options, const scree::FieldAnalysis& field, int sections) {
+  scree::ScenarioResult loaded = scree::load_scenario(options.scenario, {}, asset_dir());
+  for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
+  if (!loaded.errors.empty()) return kBadInput;
+  const fs::path folder = options.out / "dataset";
+  fs::create_directories(folder);
+  std::vector<std::string> notes;
+  scree::FieldDatasetRequest request{
+      options.scenario, {}, options.gradings.filename().string(), options.observables};
+  // The pile must be cut as the pictures are; that changes how it is looked at, not how it is made.
+  if (loaded.scenario.output.sections != sections)
+    request.overrides.push_back(fmt::format("output.sections={}", sections));
+  try {
+    notes = scree::write_field_dataset(field, request, folder);
+  } catch (const std::invalid_argument& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return kBadInput;
+  }
+  for (const std::string& note : notes) fmt::print("note: {}\n", note);
+  const scree::DatasetResult check = scree::load_dataset(folder / "dataset.yaml", asset_dir());
+  for (const scree::ScenarioError& error : check.errors) fmt::print(stderr, "{}\n", error.text());
+  if (!check.errors.empty()) return kBadInput;
+  fmt::print("dataset: {} ({} observables)\n", (folder / "dataset.yaml").string(),
+             check.dataset.observables.size());
+  return kOk;
+}
+
+}  // namespace
+
+int run_field(const FieldCliOptions& given) {
+  FieldCliOptions options = with_thesis(given);
+  const auto inputs = read_inputs(options);
+  if (!inputs) return kBadInput;
+  scree::FieldAnalysis field;
+  std::vector<scree::HeldValue> printed;
+  try {
+    field = scree::analyse_field(inputs->gradings, inputs->options);
+    if (!inputs->printed.empty())
+      printed = scree::hold_against(inputs->gradings, inputs->options, inputs->printed);
+  } catch (const std::invalid_argument& error) {
+    fmt::print(stderr, "{}: {}\n", options.gradings.string(), error.what());
+    return kBadInput;
+  }
+  if (options.out.empty()) options.out = free_run_folder(options.gradings.stem().string());
+  if (!prepare_folder(options.out, options.force)) return kBadInput;
+  for (const std::string& line : scree::field_in_words(field, printed)) fmt::print("{}\n", line);
+  if (!options.scenario.empty())
+    if (const int code = write_dataset_of(options, field, inputs->gradings.sections); code != kOk)
+      return code;
+  scree::write_field_report(options.gradings.stem().string(), field, printed, options.out);
+  fmt::print("report: {}\n", (options.out / "report.html").string());
+  return kOk;
+}

@@ -1,0 +1,91 @@
+// scree field as a user meets it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "scree_version.h"
+#include "tests/cli/call.h"
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+namespace {
+
+class Field : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder = fs::temp_directory_path() / ("scree_field_" + std::to_string(getpid()));
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+  }
+  void TearDown() override { fs::remove_all(folder); }
+  std::string write(const std::string& name, const std::string& text) {
+    std::ofstream(folder / name) << text;
+    return (folder / name).string();
+  }
+  // Ten pictures of two sections, the lower one coarser, and its whole.
+  std::string table() {
+    std::string text = "image,section,d10_cm,d50_cm,d90_cm\n";
+    for (int k = 0; k < 10; ++k) {
+      const double size = 1 + 0.05 * (k * 7 % 10);
+      const auto row = [&](const char* section, double scale) {
+        text += std::to_string(k) + "," + section;
+        for (const double d : {10.0, 30.0, 90.0}) text += "," + std::to_string(d * size * scale);
+        text += "\n";
+      };
+      row("whole", 1), row("S1", 0.6 + 0.01 * (k * 3 % 7)), row("S2", 1.2 + 0.01 * (k % 4));
+    }
+    return write("gradings.csv", text);
+  }
+  fs::path folder;
+  const std::string source = SCREE_SOURCE_DIR;
+};
+
+TEST_F(Field, ReportTablesAndDataset) {
+  const std::string out = (folder / "out").string();
+  const Called called =
+      call("field " + table() + " --sieved " + source + "/assets/gradings/G0.csv --limit 20cm --scenario " +
+           source + "/scenarios/quick_dump.yaml --observables chi,d50_m --out " + out);
+  ASSERT_EQ(called.code, 0) << called.text;
+  EXPECT_THAT(called.text, AllOf(HasSubstr("10 pictures in 2 sections"), HasSubstr("4 observables"),
+                                 HasSubstr("report: ")));
+  for (const char* file :
+       {"report.html", "sections.csv", "pictures.csv", "envelopes.csv", "histograms.csv", "chi_fit.csv",
+        "ksat.csv", "median_whole.csv", "corrected_whole.csv", "dataset/dataset.yaml",
+        "dataset/covariance.csv", "pictures/envelopes.svg", "pictures/ksat.svg"})
+    EXPECT_GT(fs::file_size(fs::path(out) / file), 50u) << file;
+  const Called checked = call("validate " + out + "/dataset/dataset.yaml");
+  EXPECT_EQ(checked.code, 0) << checked.text;
+  // The curve with fines is a grading that a scenario takes.
+  const Called scenario =
+      call("validate " + source + "/scenarios/quick_dump.yaml --set grading=" + out + "/corrected_whole.csv");
+  EXPECT_EQ(scenario.code, 0) << scenario.text;
+  EXPECT_EQ(call("field " + table() + " --out " + out).code, 2);  // it is there already
+}
+
+TEST_F(Field, RefusesWithOneLine) {
+  const std::string good = table(), out = " --out " + (folder / "none").string();
+  const std::string g0 = source + "/assets/gradings/G0.csv";
+  for (const auto& [arguments, words] : std::vector<std::pair<std::string, std::string>>{
+           {"field", "--thesis"},
+           {"field nowhere.csv" + out, "there is no such file"},
+           {"field " + good + " --sieved " + g0 + out, "belong together"},
+           {"field " + good + " --sieved " + g0 + " --limit 3kg" + out, "no length"},
+           {"field " + good + " --sieved " + g0 + " --limit 0.01mm" + out, "nothing below"},
+           {"field " + good + " --void-ratio 0" + out, "--void-ratio"},
+           {"field " + good + " --observables chi" + out, "--scenario"},
+           {"field " + good + " --scenario " + source + "/scenarios/repose_lab.yaml" + out, "repose_lift"},
+           {"field " + write("whole.csv", "image,section,d10_m,d50_m,d90_m\n1,1,1,2,3\n") + out,
+            "--original"}}) {
+    const Called called = call(arguments);
+    EXPECT_EQ(called.code, 2) << arguments << "\n" << called.text;
+    EXPECT_THAT(called.text, HasSubstr(words)) << arguments;
+  }
+  EXPECT_FALSE(fs::exists(folder / "none" / "report.html"));
+}
+
+}  // namespace
