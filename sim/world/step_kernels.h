@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "sim/contact/rrlinear.h"
+#include "sim/world/energy_balance.h"
 #include "sim/world/energy_watch.h"
 #include "sim/world/pair_list.h"
 #include "sim/world/sleep.h"
@@ -41,6 +42,9 @@ struct BlockWork {
   std::vector<int> disturbed;    ///< sleepers that one of its contacts wakes
   double overlap_ratio = 0;      ///< largest overlap over the smaller radius
   double supplied = 0;           ///< work of tools, and energy that contacts with meshes brought (J)
+  EnergyLosses losses;           ///< of this step
+  double tools = 0, pressed = 0;  ///< of this step (EnergyAccount), J
+  Vec3 momentum;  ///< sum of mass times the mean of the velocities before and after, kg m/s
   std::vector<int> broken;       ///< awake spheres that break
   AwakeEnergy energy;            ///< of its awake spheres, when asked for
   bool left_ball = false;        ///< a sphere has left its ball (PairList)
