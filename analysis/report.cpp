@@ -220,11 +220,10 @@ std::string facts(const RunResult& result) {
   if (const double error = largest_energy_error(result);
       std::any_of(result.seeds.begin(), result.seeds.end(),
                   [](const SeedResult& seed) { return seed.energy.has_value(); }))
-    fact("energy balance", std::isfinite(error)
-                               ? fmt::format("closed to {} % of what was put in{}",
-                                             decimals_text(100 * std::abs(error), 2),
-                                             n > 1 ? ", the seed that is furthest off" : "")
-                               : std::string("not a number"));
+    fact("energy balance", std::isfinite(error) ? fmt::format("closed to {} % of what was put in{}",
+                                                              decimals_text(100 * std::abs(error), 2),
+                                                              n > 1 ? ", the seed that is furthest off" : "")
+                                                : std::string("not a number"));
   fact("lost from the model", lost > 0
                                   ? fmt::format("{} spheres, {} t{}", count_text(lost),
                                                 number_text(lost_mass / 1000), n > 1 ? " over all seeds" : "")

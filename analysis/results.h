@@ -100,8 +100,8 @@ struct RunResult {
   std::vector<Comparison> comparison;
   std::vector<std::string> failures;  ///< of the watch, a line each; none: the run counts
   std::vector<std::string> notes;     ///< warnings to the reader: overlaps above 10 %, lost mass, not at rest
-  double bench_height = 0;         ///< m; 0 without a bench
-  double wall_seconds = 0;         ///< of the whole command
+  double bench_height = 0;            ///< m; 0 without a bench
+  double wall_seconds = 0;            ///< of the whole command
 };
 
 /// Reads assets/reference/results.csv

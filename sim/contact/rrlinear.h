@@ -197,8 +197,8 @@ inline ContactForce contact_step(const ContactLaw& law, const ContactStiffness& 
   f.loss = {};
   history.shear =
       carried_on<Vec3>(history.shear, n, angle, slip * (k.ks * c.dt), mu * fn, slides, f.loss.sliding);
-  history.rolling = carried_on<Vec3>(history.rolling, n, angle, bend * (k.kr * c.dt),
-                                     law.mu_r * k.rbar * fn, rolls, f.loss.rolling);
+  history.rolling = carried_on<Vec3>(history.rolling, n, angle, bend * (k.kr * c.dt), law.mu_r * k.rbar * fn,
+                                     rolls, f.loss.rolling);
   f.loss.sliding /= k.ks, f.loss.rolling /= k.kr;
 
   Vec3 shear = history.shear;
@@ -212,8 +212,8 @@ inline ContactForce contact_step(const ContactLaw& law, const ContactStiffness& 
   }
   f.rolling = history.rolling;
   if (law.mu_t > 0) {
-    history.twisting = twisted_on(history.twisting, k.kr * c.dt * c.spin.dot(n), law.mu_t * k.rbar * fn,
-                                  f.loss.twisting);
+    history.twisting =
+        twisted_on(history.twisting, k.kr * c.dt * c.spin.dot(n), law.mu_t * k.rbar * fn, f.loss.twisting);
     f.loss.twisting /= k.kr;
     f.rolling += history.twisting * n;
   }
@@ -293,9 +293,9 @@ SCREE_INLINE BasicContactForce<Lanes> contact_step(const ContactLaw& law, const 
   f.rolling = wide_second(history.springs);
   f.force = shear - c.normal * fn;
   if constexpr (Friction::kEffects) {
-    const Lanes twisting = twisted_on(wide(first_half(history.further)),
-                                      k.kr * c.dt * wide(second_half(along)),
-                                      law.mu_t * k.rbar * pressed, f.loss.twisting);
+    const Lanes twisting =
+        twisted_on(wide(first_half(history.further)), k.kr * c.dt * wide(second_half(along)),
+                   law.mu_t * k.rbar * pressed, f.loss.twisting);
     f.loss.twisting /= k.kr;
     const LaneFloats rounded = narrow(twisting);
     history.further = twin(rounded, second_half(history.further));

@@ -14,7 +14,8 @@ std::vector<std::string> watch_failures(const RunOutcome& outcome) {
     mass += grain.mass;
     finite = finite && grain.position.allFinite() && grain.velocity.allFinite();
   }
-  if (!finite) failures.emplace_back("a sphere has no finite place or velocity: lower numerics.time_step_safety");
+  if (!finite)
+    failures.emplace_back("a sphere has no finite place or velocity: lower numerics.time_step_safety");
   if (outcome.energy) {
     const double error = outcome.energy->relative_error();
     if (!(std::abs(error) <= kMostEnergyError))  // nor for NaN
@@ -24,10 +25,10 @@ std::vector<std::string> watch_failures(const RunOutcome& outcome) {
                       -100 * error, 100 * kMostEnergyError));
   }
   if (const double lost = outcome.statistics.lost_mass; lost > kMostLost * mass)
-    failures.push_back(
-        fmt::format("{:.2f} % of the mass left the model, more than {:.0f} %: widen the bench or its floor, or "
-                    "close the container's mesh",
-                    100 * lost / mass, 100 * kMostLost));
+    failures.push_back(fmt::format(
+        "{:.2f} % of the mass left the model, more than {:.0f} %: widen the bench or its floor, or "
+        "close the container's mesh",
+        100 * lost / mass, 100 * kMostLost));
   return failures;
 }
 

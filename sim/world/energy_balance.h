@@ -14,8 +14,9 @@
 // The terms follow leapfrog. From v- to v+ = v- + F dt / m the kinetic energy of a sphere changes by exactly
 // F . (v- + v+) / 2 dt, whatever makes up F: so local damping and shaking are summed as their force times the
 // mean of the two velocities. The force F(n) of a contact at x(n) thus works on half of the motion d(n) that
-// led there and half of d(n + 1) that leads on; sorted by motions instead of by forces, a spring works on d(n)
-// with (F(n-1) + F(n)) / 2. Of a spring of stiffness k, force s before, w = s + k d then, cut off to c w:
+// led there and half of d(n + 1) that leads on; sorted by motions instead of by forces, a spring works on
+// d(n) with (F(n-1) + F(n)) / 2. Of a spring of stiffness k, force s before, w = s + k d then, cut off to c
+// w:
 //   work - change of s^2 / 2k = (1 - c) w / k . (s + c w) / 2,
 // the slip times the mean force. A contact that opens slips by all that its springs still hold (c = 0). A
 // dashpot's force is c v, and its work on d(n) is v(n) . (v(n-1) + v(n)) / 2 c dt, for which the power of the
@@ -51,8 +52,8 @@ struct EnergyAccount {
   double set_moving = 0;      ///< by velocities that were set
   double tools = 0;           ///< work of meshes that move, and what left with those taken away (negative)
   double shaking = 0;         ///< work of the part of gravity that swings
-  double pressed = 0;  ///< held by contacts that began while pressed, less by those that ended so: spheres put
-                       ///< upon others, corners of meshes
+  double pressed = 0;  ///< held by contacts that began while pressed, less by those that ended so: spheres
+                       ///< put upon others, corners of meshes
   double fragments = 0;  ///< change when spheres broke and fragments grew; negative: lost in fracture
   // Taken out.
   EnergyLosses losses;

@@ -54,8 +54,7 @@ void RockWorld::add_spheres(const std::vector<NewSphere>& spheres) {
     const int i = spheres_.size() - 1;
     account_.came_moving += kinetic_energy(i);
     account_.came_potential += gravity_energy(i);
-    account_.weight_times_radius +=
-        spheres_.velocity[i].w * settings_.gravity.norm() * spheres_.place[i].w;
+    account_.weight_times_radius += spheres_.velocity[i].w * settings_.gravity.norm() * spheres_.place[i].w;
   }
   spheres_.movable = static_cast<int>(std::count(fixed_.begin(), fixed_.end(), 0));
   if (bullet_moves_spheres()) make_bodies();

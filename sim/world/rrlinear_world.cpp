@@ -253,16 +253,16 @@ void RrlinearWorld::mesh_forces(BlockWork& work, double dt) {
     const FrictionFactors own = friction_.empty() ? FrictionFactors() : friction_[i];
     const ContactStiffness stiffness = ball_facet(law, place.w);
     ContactMotion motion;
-    Vec3 lever, point;
+    double arm = 0;
+    Vec3 point;
     const auto step_of = [&](MeshContact& c) {
       const MeshBody& body = *meshes_[c.body];
       law.mu = body.surface().mu * own.mu;
       law.mu_r = body.surface().mu_r * own.mu_r;
       law.pull = law_.pull + ContactLaw::pull_of(body.surface().surface_energy);
-      const double arm = std::max(place.w - 0.5 * c.overlap, 0.1 * place.w);
+      arm = std::max(place.w - 0.5 * c.overlap, 0.1 * place.w);
       motion.normal = -c.normal;  // from the sphere to the surface
-      lever = arm * motion.normal;
-      point = place.vec() + lever;
+      point = place.vec() + arm * motion.normal;
       motion.overlap = c.overlap;
       motion.velocity = body.state().velocity_at(point) - v - arm * w.cross(motion.normal);
       motion.spin = body.state().spin - w;
@@ -275,7 +275,8 @@ void RrlinearWorld::mesh_forces(BlockWork& work, double dt) {
     };
     // Where motion alone does not explain an overlap, at a corner or the rim of a face, a contact begins,
     // shifts or ends while pressed, and brings or takes energy (EnergyAccount::pressed). One that is there at
-    // one end of the step only has half of its force on the way to the overlap that it would have at the other.
+    // one end of the step only has half of its force on the way to the overlap that it would have at the
+    // other.
     const auto opened = [&] { return motion.velocity.dot(motion.normal) * last_dt_; };
     const auto jump = [&](double overlap, double other) {
       return 0.5 * (stiffness.kn * overlap * other - law.pull * stiffness.rbar * (overlap + other));
@@ -299,7 +300,7 @@ void RrlinearWorld::mesh_forces(BlockWork& work, double dt) {
       const ContactForce f = step_of(c);
       sum_[i].force.add(f.force);
       sum_[i].force.w += 1;
-      sum_[i].torque.add(lever.cross(f.force) + f.rolling);
+      sum_[i].torque.add(arm * motion.normal.cross(f.force) + f.rolling);
       work.overlap_ratio = std::max(work.overlap_ratio, c.overlap / place.w);
       if (const MeshBody& body = *meshes_[c.body]; body.motion().moves()) {
         const double power = f.force.dot(body.state().velocity_at(point)) + f.rolling.dot(body.state().spin);
@@ -584,7 +585,8 @@ Energy RrlinearWorld::energy() const {
     for (const Neighbour& n : pairs_.owned(i))
       if (n.touching()) e.elastic += elastic_energy_of(i, n), e.pull -= pull_work(i, n);
   for (int i = 0; i < facets_.rows(); ++i)
-    for (const MeshContact& c : mesh_contacts(i)) e.elastic += elastic_energy_of(c, i), e.pull -= pull_work(c, i);
+    for (const MeshContact& c : mesh_contacts(i))
+      e.elastic += elastic_energy_of(c, i), e.pull -= pull_work(c, i);
   return e;
 }
 

@@ -100,10 +100,10 @@ class RrlinearWorld final : public RockWorld {
   std::vector<int> block_at_;          // by block: its place in blocks_, or -1
   std::vector<int> disturbed_, near_rim_;
   std::vector<GrowingSphere> growing_;
-  std::vector<double> bears_;  // by sphere: energy of a contact that does not break it, J
-  double next_growth_ = 0;     // of fragments, s
+  std::vector<double> bears_;               // by sphere: energy of a contact that does not break it, J
+  double next_growth_ = 0;                  // of fragments, s
   std::optional<double> before_fragments_;  // energy of the scene before spheres broke or fragments grew, J
-  bool blocks_due_ = true;     // who is awake has changed
+  bool blocks_due_ = true;                  // who is awake has changed
 };
 
 }  // namespace scree

@@ -17,11 +17,11 @@ using testing::IsEmpty;
 
 RunOutcome small_dump() {
   const std::string source = SCREE_SOURCE_DIR;
-  ScenarioResult loaded = load_scenario(
-      source + "/scenarios/quick_dump.yaml",
-      {"experiment.payload_t=5", "experiment.bench.height_m=3", "experiment.bench.width_m=30",
-       "experiment.bench.top_length_m=10", "experiment.bench.floor_length_m=15"},
-      source + "/assets");
+  ScenarioResult loaded =
+      load_scenario(source + "/scenarios/quick_dump.yaml",
+                    {"experiment.payload_t=5", "experiment.bench.height_m=3", "experiment.bench.width_m=30",
+                     "experiment.bench.top_length_m=10", "experiment.bench.floor_length_m=15"},
+                    source + "/assets");
   return run_scenario(loaded.scenario, 10001, 1, {});
 }
 

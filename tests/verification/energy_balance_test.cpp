@@ -80,7 +80,8 @@ TEST(EnergyBalance, BeltWorks) {
   RrlinearWorld world(settings);
   Pose end;
   end.position = {10 * speed, 0, 0};
-  world.add_mesh(make_box({-20, -5, -1}, {20, 5, 0}), Surface{0.3, 0.0}, Motion({{0.0, Pose{}}, {10.0, end}}));
+  world.add_mesh(make_box({-20, -5, -1}, {20, 5, 0}), Surface{0.3, 0.0},
+                 Motion({{0.0, Pose{}}, {10.0, end}}));
   world.add_spheres({on_floor(settings.material, Vec3::Zero())});
   world.advance_to(0.5);
   const EnergyBalance b = balance_of(world);
@@ -183,9 +184,9 @@ TEST(EnergyBalance, WhatIsPutIn) {
 // Rock that falls into a box as in a run: the step that the engine takes, corners of meshes, sleep.
 void rain(RrlinearWorld& world, double time) {
   for (const auto& [low, high] :
-       {std::pair(Vec3(-0.7, -0.6, -0.2), Vec3(0.7, 0.6, 0)), std::pair(Vec3(-0.7, -0.6, 0), Vec3(-0.5, 0.6, 3)),
-        std::pair(Vec3(0.5, -0.6, 0), Vec3(0.7, 0.6, 3)), std::pair(Vec3(-0.5, -0.6, 0), Vec3(0.5, -0.4, 3)),
-        std::pair(Vec3(-0.5, 0.4, 0), Vec3(0.5, 0.6, 3))})
+       {std::pair(Vec3(-0.7, -0.6, -0.2), Vec3(0.7, 0.6, 0)),
+        std::pair(Vec3(-0.7, -0.6, 0), Vec3(-0.5, 0.6, 3)), std::pair(Vec3(0.5, -0.6, 0), Vec3(0.7, 0.6, 3)),
+        std::pair(Vec3(-0.5, -0.6, 0), Vec3(0.5, -0.4, 3)), std::pair(Vec3(-0.5, 0.4, 0), Vec3(0.5, 0.6, 3))})
     world.add_mesh(make_box(low, high), Surface{0.4, 0.2}, Motion());
   Random random(7, 0, RandomPurpose::positions);
   std::vector<NewSphere> rock;
@@ -229,7 +230,8 @@ TEST(EnergyBalance, ClosesWithEveryEffect) {
        [](const EnergyBalance& b) { return b.account.shaking; }},
       {"breakage",
        [](WorldSettings& s) {
-         s.breakage = {.fragility = 0.5, .exponent = 0.5, .reference_diameter = 0.06, .smallest_diameter = 0.02};
+         s.breakage = {
+             .fragility = 0.5, .exponent = 0.5, .reference_diameter = 0.06, .smallest_diameter = 0.02};
        },
        [](const EnergyBalance& b) { return -b.account.fragments; }},
   };
@@ -257,13 +259,13 @@ TEST(EnergyBalance, DoesNotDependOnThreads) {
   }
 }
 
-// A ball that bounces without damping. At 0.1 of sqrt(m / k) the scheme keeps its energy to 1 %; at 1.3, where
-// leapfrog is stable still (up to 2) and nothing blows up, it does not.
+// A ball that bounces without damping. At 0.1 of sqrt(m / k) the scheme keeps its energy to 1 %; at 1.3,
+// where leapfrog is stable still (up to 2) and nothing blows up, it does not.
 TEST(EnergyBalance, StaysOpenWhenTheStepIsTooLong) {
   for (const double ratio : {0.1, 1.3}) {
     WorldSettings settings = undamped(0);
-    settings.fixed_time_step = ratio * std::sqrt(ball_mass(settings.material, kRadius) /
-                                                 wall_stiffness(settings.material, kRadius));
+    settings.fixed_time_step =
+        ratio * std::sqrt(ball_mass(settings.material, kRadius) / wall_stiffness(settings.material, kRadius));
     RrlinearWorld world(settings);
     add_floor(world, {0.3, 0.1});
     world.add_spheres({ball({0, 0, 3 * kRadius}, kRadius)});
