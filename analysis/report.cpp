@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "analysis/energy_table.h"
 #include "analysis/finished_runs.h"
 #include "analysis/flow_picture.h"
 #include "analysis/inside_pictures.h"
@@ -25,6 +26,15 @@ std::string notes_box(const RunResult& result) {
   if (result.notes.empty()) return "";
   std::string out = "<div class=\"notes\" role=\"note\"><strong>Read with care</strong><ul>\n";
   for (const std::string& note : result.notes) out += fmt::format("<li>{}</li>\n", html_escaped(note));
+  return out + "</ul></div>\n";
+}
+
+std::string failures_box(const RunResult& result) {
+  if (result.failures.empty()) return "";
+  std::string out =
+      "<div class=\"notes\" role=\"alert\"><strong>FAILED: this run does not count</strong><ul>\n";
+  for (const std::string& failure : result.failures)
+    out += fmt::format("<li>{}</li>\n", html_escaped(failure));
   return out + "</ul></div>\n";
 }
 
@@ -207,6 +217,13 @@ std::string facts(const RunResult& result) {
     fact("time step", low == high ? high + " µs" : low + " to " + high + " µs");
   }
   fact("largest overlap", number_text(100 * overlap, 2) + " % of the smaller radius");
+  if (const double error = largest_energy_error(result);
+      std::any_of(result.seeds.begin(), result.seeds.end(),
+                  [](const SeedResult& seed) { return seed.energy.has_value(); }))
+    fact("energy balance", std::isfinite(error) ? fmt::format("closed to {} % of what was put in{}",
+                                                              decimals_text(100 * std::abs(error), 2),
+                                                              n > 1 ? ", the seed that is furthest off" : "")
+                                                : std::string("not a number"));
   fact("lost from the model", lost > 0
                                   ? fmt::format("{} spheres, {} t{}", count_text(lost),
                                                 number_text(lost_mass / 1000), n > 1 ? " over all seeds" : "")
@@ -235,7 +252,7 @@ result.</dd>
 void write_report(const RunResult& result, const std::filesystem::path& folder, const SceneFacts& scene) {
   const std::filesystem::path pictures = folder / "pictures";
   std::filesystem::create_directories(pictures);
-  std::string page = lead_paragraphs(result) + notes_box(result);
+  std::string page = failures_box(result) + lead_paragraphs(result) + notes_box(result);
   page += figures("The pile", draw_pile(result, scene, pictures));
   if (!result.comparison.empty())
     page += "<h2>Held against printed values</h2>\n" + comparison_table(result.comparison);
@@ -245,7 +262,7 @@ void write_report(const RunResult& result, const std::filesystem::path& folder, 
   if (std::any_of(result.seeds.begin(), result.seeds.end(),
                   [](const SeedResult& seed) { return seed.heap.has_value(); }))
     page += heap_table(result);
-  page += facts(result) + kGlossary;
+  page += facts(result) + energy_table(result) + kGlossary;
   const std::string under =
       fmt::format("Simulated with scree {}, scenario {}", result.version, result.scenario);
   write_text_file(folder / "report.html",

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/energy_terms.h"
 #include "analysis/flow.h"
 #include "analysis/heap_shape.h"
 #include "analysis/inside.h"
@@ -31,6 +32,8 @@ struct SeedResult {
   double lost_mass = 0;                  ///< kg
   std::int64_t squeezed_into_walls = 0;  ///< mesh contacts that began inside a closed mesh
   std::int64_t crowded_contacts = 0;     ///< mesh contacts left out because a sphere had too many
+  std::optional<EnergyTerms> energy;     ///< none with engine impulse
+  std::vector<std::string> failures;     ///< of the watch (sim/scene/watch.h): the seed does not count
   bool at_rest = false;                  ///< every dump came to rest before max_time
   bool interrupted = false;
   Snapshot final_state;
@@ -95,9 +98,10 @@ struct RunResult {
   std::string title, scenario, engine, version;
   std::vector<SeedResult> seeds;
   std::vector<Comparison> comparison;
-  std::vector<std::string> notes;  ///< warnings to the reader: overlaps above 10 %, lost mass, not at rest
-  double bench_height = 0;         ///< m; 0 without a bench
-  double wall_seconds = 0;         ///< of the whole command
+  std::vector<std::string> failures;  ///< of the watch, a line each; none: the run counts
+  std::vector<std::string> notes;     ///< warnings to the reader: overlaps above 10 %, lost mass, not at rest
+  double bench_height = 0;            ///< m; 0 without a bench
+  double wall_seconds = 0;            ///< of the whole command
 };
 
 /// Reads assets/reference/results.csv

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "analysis/energy_table.h"
 #include "analysis/outputs.h"
 #include "sim/io/text_file.h"
 
@@ -68,11 +69,34 @@ Json outputs(const SeedResult& seed) {
   return list;
 }
 
+/// Terms in joules, by what they are.
+Json energy(const EnergyTerms& energy) {
+  Json put_in = Json::object(), held = Json::object(), taken_out = Json::object();
+  for (const EnergyTerm& term : energy.terms) {
+    Json& side = term.side == EnergyTerm::Side::put_in ? put_in
+                 : term.side == EnergyTerm::Side::held ? held
+                                                       : taken_out;
+    side[term.name + "_j"] = number(term.joule);
+  }
+  return {{"put_in", put_in},
+          {"still_there", held},
+          {"taken_out", taken_out},
+          {"put_in_j", number(energy.put_in)},
+          {"error_j", number(energy.error)},
+          {"error_over_put_in", number(energy.relative_error)}};
+}
+
+const char* verdict_of_watch(const std::vector<std::string>& failures) {
+  return failures.empty() ? "passed" : "FAILED";
+}
+
 Json seed_facts(const SeedResult& seed) {
   Json tables = Json::array();
   for (const SectionTable& table : seed.sections) tables.push_back(passing_curves(table));
   return {{"tables", tables},
           {"seed", seed.seed},
+          {"watch", verdict_of_watch(seed.failures)},
+          {"energy", seed.energy ? energy(*seed.energy) : Json(nullptr)},
           {"outputs", outputs(seed)},
           {"particles", seed.particles},
           {"fixed_balls", seed.fixed.size()},
@@ -221,7 +245,9 @@ void write_summary(const RunResult& result, const std::filesystem::path& file) {
                        {"dumps", section_layout(result, table)->dumps},
                        {"sections", section_list(result, table)}});
 
-  Json out = {{"title", result.title},
+  Json out = {{"watch", verdict_of_watch(result.failures)},
+              {"failures", result.failures},
+              {"title", result.title},
               {"scenario", result.scenario},
               {"engine", result.engine},
               {"version", result.version},
@@ -234,6 +260,7 @@ void write_summary(const RunResult& result, const std::filesystem::path& file) {
               {"largest_overlap_ratio", number(overlap)},
               {"lost_particles", total(seeds, &SeedResult::lost_particles)},
               {"lost_mass_t", number(total(seeds, &SeedResult::lost_mass) / 1000)},
+              {"energy_error_over_put_in", number(largest_energy_error(result))},
               {"at_rest", at_rest},
               {"interrupted", interrupted},
               {"per_seed", facts},

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-/// Exit codes of scree.
-enum ExitCode { kOk = 0, kFailed = 1, kBadInput = 2, kInterrupted = 130 };
+/// Exit codes of scree. kWatchFailed: a run broke the physics watch (sim/scene/watch.h) or blew up.
+enum ExitCode { kOk = 0, kFailed = 1, kBadInput = 2, kWatchFailed = 3, kInterrupted = 130 };
 
 struct RunOptions {
   std::filesystem::path file;

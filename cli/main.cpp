@@ -75,6 +75,8 @@ int main(int argc, char** argv) {
   run_app->add_flag("--summary-only", run.summary_only,
                     "Write summary.json and sections.csv, no report and no pictures");
   run_app->footer(
+      "\nExit codes: 0 done; 1 failed; 2 bad input; 3 the run broke the watch on energy, numbers and lost "
+      "rock, and does not count; 130 interrupted\n"
       "\nExamples:\n  scree run scenarios/quick_dump.yaml\n"
       "  scree run scenarios/a1_10m.yaml --seeds 5 --out runs/a1_five --set experiment.dumps=2\n");
 

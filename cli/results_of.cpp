@@ -12,6 +12,7 @@
 #include "analysis/toe_share.h"
 #include "scree_version.h"
 #include "sim/scene/ground.h"
+#include "sim/scene/watch.h"
 #include "sim/world/mesh_contact.h"
 
 namespace scree {
@@ -54,6 +55,35 @@ void analyse_inside_of(const Scenario& scenario, const BenchSpec& bench, const s
   r.largest_at_toe = share_reaching_toe(r.final_state.grains, bench.height, dumped);
 }
 
+EnergyTerms energy_terms(const EnergyBalance& balance) {
+  const EnergyAccount& a = balance.account;
+  const Energy& held = balance.held;
+  const EnergyLosses& lost = a.losses;
+  constexpr auto put_in = EnergyTerm::Side::put_in, still = EnergyTerm::Side::held,
+                 taken_out = EnergyTerm::Side::taken_out;
+  return {{{"fall", "fall of the rock", put_in, balance.fall()},
+           {"came_moving", "rock that came with speed", put_in, a.came_moving},
+           {"set_moving", "rock that was given a speed", put_in, a.set_moving},
+           {"tools", "work of tools; negative: rock that pushed them, or lost their hold", put_in, a.tools},
+           {"shaking", "the platform that shakes", put_in, a.shaking},
+           {"pressed", "contacts that began pressed, at corners of meshes and of rock put upon rock", put_in,
+            a.pressed},
+           {"fragments", "fragments that grew, less what fracture took", put_in, a.fragments},
+           {"kinetic", "motion", still, held.kinetic},
+           {"elastic", "springs of contacts", still, held.elastic},
+           {"pull", "cohesion", still, held.pull},
+           {"sliding", "sliding friction", taken_out, lost.sliding},
+           {"rolling", "rolling friction", taken_out, lost.rolling},
+           {"twisting", "twisting friction", taken_out, lost.twisting},
+           {"dashpots", "dashpots", taken_out, lost.dashpots},
+           {"local_damping", "local damping", taken_out, lost.local_damping},
+           {"put_to_sleep", "spheres put to sleep", taken_out, a.put_to_sleep},
+           {"lost", "spheres that left the model", taken_out, a.lost_other}},
+          balance.put_in(),
+          balance.error(),
+          balance.relative_error()};
+}
+
 }  // namespace
 
 std::optional<FlowRecorder> make_flow_recorder(const Scenario& scenario) {
@@ -83,6 +113,8 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
   r.largest_overlap_ratio = outcome.statistics.largest_overlap_ratio;
   r.lost_particles = outcome.statistics.lost_particles;
   r.lost_mass = outcome.statistics.lost_mass;
+  if (outcome.energy) r.energy = energy_terms(*outcome.energy);
+  r.failures = watch_failures(outcome);
   r.squeezed_into_walls = outcome.statistics.squeezed_into_walls;
   r.crowded_contacts = outcome.statistics.crowded_contacts;
   r.at_rest = outcome.at_rest && !outcome.interrupted;
@@ -157,6 +189,8 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
   std::int64_t squeezed = 0, crowded = 0;
   std::int64_t lost_count = 0;
   for (const SeedResult& s : result.seeds) {
+    for (const std::string& failure : s.failures)
+      result.failures.push_back(fmt::format("seed {}: {}", s.seed, failure));
     overlap = std::max(overlap, s.largest_overlap_ratio);
     lost += s.lost_mass, lost_count += s.lost_particles, mass += s.mass;
     squeezed += s.squeezed_into_walls, crowded += s.crowded_contacts;

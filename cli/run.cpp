@@ -52,6 +52,7 @@ struct SeedRun {
   std::unique_ptr<scree::SeedResult> result;
   std::vector<std::string> notes;
   std::string failure;
+  bool blew_up = false;  // the failure is one of the watch
 };
 
 void run_seed(const scree::Scenario& scenario, SeedRun& run, int threads, const fs::path& folder,
@@ -82,6 +83,9 @@ void run_seed(const scree::Scenario& scenario, SeedRun& run, int threads, const 
     run.notes = outcome.notes;
     run.result = std::make_unique<scree::SeedResult>(
         scree::analyse(scenario, run.seed, std::move(outcome), std::move(flow)));
+  } catch (const scree::BlowUp& error) {
+    run.failure = error.what();
+    run.blew_up = true;
   } catch (const std::exception& error) {
     run.failure = error.what();
   }
@@ -136,13 +140,13 @@ int run_run(const RunOptions& options) {
   }
 
   std::vector<scree::SeedResult> results;
-  std::vector<std::string> notes;
-  bool failed = false;
+  std::vector<std::string> notes, failures;
+  int code = kOk;
   for (SeedRun& run : runs) {
     if (!run.failure.empty()) {
-      failed = true;
+      code = std::max<int>(code, run.blew_up ? kWatchFailed : kFailed);
       fmt::print(stderr, "seed {}: {}\n", run.seed, run.failure);
-      notes.push_back(fmt::format("seed {} failed: {}", run.seed, run.failure));
+      failures.push_back(fmt::format("seed {}: {}", run.seed, run.failure));
     }
     notes.insert(notes.end(), run.notes.begin(), run.notes.end());
     if (run.result) results.push_back(std::move(*run.result));
@@ -160,12 +164,16 @@ int run_run(const RunOptions& options) {
   }
   if (results.empty()) {
     fmt::print(stderr, "no seed came to a result; what was written is in {}\n", out.string());
-    return interrupted ? kInterrupted : kFailed;
+    return interrupted ? kInterrupted : std::max<int>(code, kFailed);
   }
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const scree::RunResult result =
+  scree::RunResult result =
       scree::put_together(scenario, std::move(results), std::move(notes),
                           scree::read_reference(asset_dir() / "reference" / "results.csv"), wall);
+  // To stderr as well: a sweep quotes it.
+  for (const std::string& failure : result.failures) fmt::print(stderr, "{}\n", failure);
+  if (!result.failures.empty()) code = kWatchFailed;
+  result.failures.insert(result.failures.begin(), failures.begin(), failures.end());
   scree::write_summary(result, out / "summary.json");
   scree::write_sections_csv(result, out / "sections.csv");
   scree::write_conductivity_csv(result, out / "ksat.csv");
@@ -178,6 +186,5 @@ int run_run(const RunOptions& options) {
   scree::print_result(result);
   fmt::print("\n{}: {}\n", options.summary_only ? "summary" : "report",
              (out / (options.summary_only ? "summary.json" : "report.html")).string());
-  if (interrupted) return kInterrupted;
-  return failed ? kFailed : kOk;
+  return interrupted ? kInterrupted : code;
 }

@@ -47,9 +47,11 @@ void print_result(const RunResult& result) {
   for (const SeedResult& s : result.seeds)
     fmt::print(
         "seed {}: {} spheres, {:.1f} s simulated in {:.1f} s, {:.1f} M particle-steps/s, largest overlap "
-        "{:.0f} %, lost {}{}\n",
+        "{:.0f} %, energy closed to {}, lost {}{}\n",
         s.seed, s.particles, s.simulated_seconds, s.wall_seconds, s.particle_steps / s.wall_seconds / 1e6,
-        100 * s.largest_overlap_ratio, s.lost_particles, s.at_rest ? "" : "  (not at rest)");
+        100 * s.largest_overlap_ratio,
+        s.energy ? fmt::format("{:.2f} %", 100 * std::abs(s.energy->relative_error)) : "- (impulse)",
+        s.lost_particles, s.at_rest ? "" : "  (not at rest)");
   if (const SectionTable* layout = section_layout(result, 0)) {
     fmt::print("\n{:<8} {:>6} {:>9} {:>16} {:>8} {:>9}\n", "section", "x/L", "mass t", "chi", "D50 m",
                "D50/D50'");
@@ -83,6 +85,7 @@ void print_result(const RunResult& result) {
         with_std(a.mean, a.std), with_std(o.mean, o.std), with_std(h.mean, h.std));
   }
   print_comparison(result.comparison);
+  for (const std::string& failure : result.failures) fmt::print("\nFAILED: {}\n", failure);
   for (const std::string& note : result.notes) fmt::print("\nnote: {}\n", note);
 }
 

@@ -49,6 +49,7 @@ struct ContactLaw {
         weakening(effects.weakening),
         weakening_speed(effects.weakening_speed) {}
 
+  bool has_dashpots() const { return beta_n > 0 || beta_s > 0; }
   static double pull_of(double surface_energy) { return 2 * std::numbers::pi * surface_energy; }
 };
 
@@ -79,6 +80,7 @@ struct ContactHistory {
   Vec3 shear = Vec3::Zero();    ///< N
   Vec3 rolling = Vec3::Zero();  ///< N m
   double twisting = 0;          ///< N m about the normal; effects alone
+  double dashpot_power = 0;     ///< W, that dashpots took in the last step
 };
 
 /// How the two pieces move against each other over one step.
@@ -92,12 +94,19 @@ struct ContactMotion {
   double dt;            ///< s
 };
 
+/// Energy that one step of a contact takes from the motion for good, J (world/energy_balance.h).
+template <class Real>
+struct BasicContactLoss {
+  Real sliding, rolling, twisting, dashpots;
+};
+
 /// Force and rolling moment on piece 1; piece 2 gets the opposite.
 template <class Real>
 struct BasicContactForce {
   using Vector = typename VectorOf<Real>::type;
   Vector force;    ///< N, normal and shear
   Vector rolling;  ///< N m
+  BasicContactLoss<Real> loss;
 };
 using ContactForce = BasicContactForce<double>;
 
@@ -125,14 +134,17 @@ SCREE_INLINE Vector turned_with_contact(const Vector& v, const Vector& n, std::t
 }
 
 /// One step of a memory: turned with the contact, what the pieces have moved against each other in the
-/// contact plane added, cut off at the limit. `slips`: it was cut off.
+/// contact plane added, cut off at the limit. `slips`: it was cut off. `lost`: work of the slip, times the
+/// stiffness.
 template <class Vector, class Real, class Mask>
 SCREE_INLINE Vector carried_on(const Vector& memory, const Vector& normal, Real angle, const Vector& added,
-                               Real limit, Mask& slips) {
-  const Vector whole = turned_with_contact(memory, normal, angle) + added;
-  const Real size2 = whole.squaredNorm();
+                               Real limit, Mask& slips, Real& lost) {
+  const Vector turned = turned_with_contact(memory, normal, angle), whole = turned + added;
+  const Real one = Real{} + 1, size2 = whole.squaredNorm();
   slips = size2 > limit * limit;
-  return whole * pick(slips, limit / root(size2), Real{} + 1);
+  const Real kept = pick(slips, limit / root(size2), one);
+  lost = (one - kept) * (whole.dot(turned) + kept * size2) * 0.5f;
+  return whole * kept;
 }
 
 /// Normal force, with its dashpot; `opening`: speed of 2 against 1 along the normal, m/s.
@@ -157,10 +169,18 @@ SCREE_INLINE Real weakened(const ContactLaw& law, Real mu, Real speed) {
   return mu * (1.0 - law.weakening * speed / (speed + law.weakening_speed));
 }
 
-/// One step of a twisting moment, cut off at the limit.
+/// One step of a twisting moment, cut off at the limit. `lost`: work of the slip, times the stiffness.
 template <class Real>
-SCREE_INLINE Real twisted_on(Real moment, Real added, Real limit) {
-  return larger(smaller(moment + added, limit), -limit);
+SCREE_INLINE Real twisted_on(Real moment, Real added, Real limit, Real& lost) {
+  const Real whole = moment + added, kept = larger(smaller(whole, limit), -limit);
+  lost = (whole - kept) * (moment + kept) * 0.5;
+  return kept;
+}
+
+/// Work (J) of dashpots that take `power` now and took `before` in the step before.
+template <class Real>
+SCREE_INLINE Real dashpot_work(Real power, Real before, double dt) {
+  return (power + root(power * before)) * (0.5 * dt);
 }
 
 /// One step of the law; updates the history.
@@ -173,18 +193,32 @@ inline ContactForce contact_step(const ContactLaw& law, const ContactStiffness& 
 
   const double mu = law.weakening == 0 ? law.mu : weakened(law, law.mu, slip.norm());
   bool slides, rolls;
-  history.shear = carried_on<Vec3>(history.shear, n, angle, slip * (k.ks * c.dt), mu * fn, slides);
-  history.rolling =
-      carried_on<Vec3>(history.rolling, n, angle, bend * (k.kr * c.dt), law.mu_r * k.rbar * fn, rolls);
+  ContactForce f;
+  f.loss = {};
+  history.shear =
+      carried_on<Vec3>(history.shear, n, angle, slip * (k.ks * c.dt), mu * fn, slides, f.loss.sliding);
+  history.rolling = carried_on<Vec3>(history.rolling, n, angle, bend * (k.kr * c.dt), law.mu_r * k.rbar * fn,
+                                     rolls, f.loss.rolling);
+  f.loss.sliding /= k.ks, f.loss.rolling /= k.kr;
 
   Vec3 shear = history.shear;
-  if (law.beta_s > 0.0 && !slides) shear += slip * shear_dashpot(law, k, c.reduced_mass);
-  Vec3 moment = history.rolling;
-  if (law.mu_t > 0) {
-    history.twisting = twisted_on(history.twisting, k.kr * c.dt * c.spin.dot(n), law.mu_t * k.rbar * fn);
-    moment += history.twisting * n;
+  if (law.has_dashpots()) {
+    const double shear_viscosity = slides ? 0.0 : shear_dashpot(law, k, c.reduced_mass);
+    if (law.beta_s > 0.0 && !slides) shear += slip * shear_viscosity;
+    const double power =
+        std::max((k.kn * c.overlap - fn) * opening, 0.0) + shear_viscosity * slip.squaredNorm();
+    f.loss.dashpots = dashpot_work(power, history.dashpot_power, c.dt);
+    history.dashpot_power = power;
   }
-  return {shear - n * (fn - law.pull * k.rbar), moment};
+  f.rolling = history.rolling;
+  if (law.mu_t > 0) {
+    history.twisting =
+        twisted_on(history.twisting, k.kr * c.dt * c.spin.dot(n), law.mu_t * k.rbar * fn, f.loss.twisting);
+    f.loss.twisting /= k.kr;
+    f.rolling += history.twisting * n;
+  }
+  f.force = shear - n * (fn - law.pull * k.rbar);
+  return f;
 }
 
 // The same for four contacts side by side. Overlap, the spring's normal force and the sums stay in double
@@ -202,8 +236,11 @@ struct LaneContactMotion {
   Lanes reduced_mass;
   double dt;
 };
-/// Shear forces and rolling moments of four contacts.
-using LaneContactHistory = LaneVector<TwinFloats>;
+/// What four contacts remember.
+struct LaneContactHistory {
+  LaneVector<TwinFloats> springs;  ///< shear forces beside rolling moments
+  TwinFloats further;              ///< twisting moments (N m, effects alone) beside the power of dashpots (W)
+};
 
 /// Friction of four contacts under the plain law, and with what effects make of it.
 struct PlainFriction {
@@ -213,11 +250,10 @@ struct PlainFriction {
 struct EffectFriction {
   static constexpr bool kEffects = true;
   Lanes mu, mu_r;
-  LaneFloats twisting;  ///< the moments that are remembered, N m; updated
 };
 
 template <class Friction>
-SCREE_INLINE BasicContactForce<Lanes> contact_step(const ContactLaw& law, Friction& friction,
+SCREE_INLINE BasicContactForce<Lanes> contact_step(const ContactLaw& law, const Friction& friction,
                                                    const BasicContactStiffness<Lanes>& k,
                                                    const LaneContactMotion& c, LaneContactHistory& history) {
   const LaneVector<LaneFloats>& n = c.rounded_normal;
@@ -230,24 +266,43 @@ SCREE_INLINE BasicContactForce<Lanes> contact_step(const ContactLaw& law, Fricti
   auto mu = friction.mu;
   if constexpr (Friction::kEffects)
     mu = weakened(law, mu, wide(first_half(root(slip_and_bend.squaredNorm()))));
+  // A contact that opens, whose force is not used, slips by all that it holds.
+  const Lanes pressed = larger(fn, Lanes{});
   const TwinFloats stiffness = twin(narrow(k.ks * c.dt), narrow(k.kr * c.dt)),
-                   limit = twin(narrow(mu * fn), narrow(friction.mu_r * k.rbar * fn));
+                   limit = twin(narrow(mu * pressed), narrow(friction.mu_r * k.rbar * pressed));
   TwinMask slips;
-  history = carried_on(history, nn, twin(angle, angle), slip_and_bend * stiffness, limit, slips);
+  TwinFloats lost;
+  history.springs =
+      carried_on(history.springs, nn, twin(angle, angle), slip_and_bend * stiffness, limit, slips, lost);
+  lost /= twin(narrow(k.ks), narrow(k.kr));
 
-  LaneVec3 shear = wide_first(history);
-  if (law.beta_s > 0.0) {
-    const Lanes sticks = wide(first_half(pick(slips, TwinFloats{}, TwinFloats{} + 1)));
-    shear = shear + wide_first(slip_and_bend) * (sticks * shear_dashpot(law, k, c.reduced_mass));
+  BasicContactForce<Lanes> f;
+  f.loss.sliding = wide(first_half(lost)), f.loss.rolling = wide(second_half(lost));
+  f.loss.twisting = f.loss.dashpots = Lanes{};
+  LaneVec3 shear = wide_first(history.springs);
+  if (law.has_dashpots()) {
+    const Lanes sticks = wide(first_half(pick(slips, TwinFloats{}, TwinFloats{} + 1))),
+                shear_viscosity = sticks * shear_dashpot(law, k, c.reduced_mass);
+    const LaneVec3 slip = wide_first(slip_and_bend);
+    if (law.beta_s > 0.0) shear = shear + slip * shear_viscosity;
+    const Lanes power = larger((k.kn * c.overlap - fn) * wide(first_half(along)), Lanes{}) +
+                        shear_viscosity * slip.squaredNorm();
+    f.loss.dashpots = dashpot_work(power, wide(second_half(history.further)), c.dt);
+    history.further = twin(first_half(history.further), narrow(power));
   }
+  f.rolling = wide_second(history.springs);
+  f.force = shear - c.normal * fn;
   if constexpr (Friction::kEffects) {
-    friction.twisting = narrow(
-        twisted_on(wide(friction.twisting), k.kr * c.dt * wide(second_half(along)), law.mu_t * k.rbar * fn));
-    const LaneVec3 moment = wide_second(history) + c.normal * wide(friction.twisting);
-    return {shear - c.normal * (fn - law.pull * k.rbar), moment};
-  } else {
-    return {shear - c.normal * fn, wide_second(history)};
+    const Lanes twisting =
+        twisted_on(wide(first_half(history.further)), k.kr * c.dt * wide(second_half(along)),
+                   law.mu_t * k.rbar * pressed, f.loss.twisting);
+    f.loss.twisting /= k.kr;
+    const LaneFloats rounded = narrow(twisting);
+    history.further = twin(rounded, second_half(history.further));
+    f.rolling = f.rolling + c.normal * wide(rounded);
+    f.force = shear - c.normal * (fn - law.pull * k.rbar);
   }
+  return f;
 }
 
 /// Elastic energy held by the springs of a contact (J).

@@ -48,6 +48,7 @@ struct RunOutcome {
   std::vector<Grain> fixed;              ///< balls of the base layer
   std::optional<double> rebound_height;  ///< drop test: highest rise of its lowest point after the fall, m
   WorldStatistics statistics;
+  std::optional<EnergyBalance> energy;  ///< closed at the end; none with engine impulse
   double simulated_seconds = 0, wall_seconds = 0;
   bool at_rest = true;  ///< every load came to rest before stop.max_time
   bool interrupted = false;

@@ -183,6 +183,7 @@ RunOutcome Stage::finish() {
   outcome_.final_state = world_->snapshot();
   if (hooks_.frame) hooks_.frame(outcome_.final_state, world_->statistics().steps);
   outcome_.statistics = world_->statistics();
+  outcome_.energy = world_->energy_balance();
   outcome_.simulated_seconds = world_->time();
   if (model_.changes.breakage.on())
     note(fmt::format("seed {}: {} grains broke, fragments of fragments included", seed_,

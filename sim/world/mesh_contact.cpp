@@ -189,6 +189,7 @@ MeshContactChanges update_mesh_contacts(const std::vector<std::unique_ptr<MeshBo
   int count = 0;
   for (int k = 0; k < known; ++k) {
     if (!goes_on[k]) continue;
+    changes.went_on |= 1u << k;
     if (count != k) slots[count] = slots[k];
     ++count;
   }

@@ -29,6 +29,7 @@ struct FacetRef {
 /// What update_mesh_contacts found new, and what it could not do as it should.
 struct MeshContactChanges {
   int begun = 0;         ///< contacts that began: the last ones
+  unsigned went_on = 0;  ///< bit k: the contact in slot k before did not end
   int without_slot = 0;  ///< contacts left out because the sphere has too many
   int born_inside =
       0;  ///< contacts that began inside a closed mesh: the sphere was squeezed through or put there

@@ -28,10 +28,10 @@ namespace scree {
 /// saved.
 struct alignas(32) ContactMemory {
   float shear[4] = {0, 0, 0, 0};    ///< N; the last: moment about the normal, N m (effects alone)
-  float rolling[4] = {0, 0, 0, 0};  ///< N m; the last is not used
+  float rolling[4] = {0, 0, 0, 0};  ///< N m; the last: power of dashpots, W
 
   ContactHistory history() const {
-    return {{shear[0], shear[1], shear[2]}, {rolling[0], rolling[1], rolling[2]}, shear[3]};
+    return {{shear[0], shear[1], shear[2]}, {rolling[0], rolling[1], rolling[2]}, shear[3], rolling[3]};
   }
 };
 

@@ -50,6 +50,11 @@ void RockWorld::add_spheres(const std::vector<NewSphere>& spheres) {
   for (const NewSphere& s : spheres) {
     if (next_ >= reserved_) next_ = std::max(next_, next_fragment_);
     add_sphere(s, sphere_mass(settings_.material, s.diameter), next_++);
+    if (s.fixed) continue;
+    const int i = spheres_.size() - 1;
+    account_.came_moving += kinetic_energy(i);
+    account_.came_potential += gravity_energy(i);
+    account_.weight_times_radius += spheres_.velocity[i].w * settings_.gravity.norm() * spheres_.place[i].w;
   }
   spheres_.movable = static_cast<int>(std::count(fixed_.begin(), fixed_.end(), 0));
   if (bullet_moves_spheres()) make_bodies();
@@ -148,8 +153,10 @@ void RockWorld::set_velocity(std::int64_t id, const Vec3& velocity, const Vec3& 
   const auto at = std::find(spheres_.id.begin(), spheres_.id.end(), id);
   if (at == spheres_.id.end()) throw std::out_of_range(fmt::format("no sphere has the number {}", id));
   const auto i = static_cast<int>(at - spheres_.id.begin());
+  account_.set_moving -= kinetic_energy(i);
   spheres_.velocity[i].set(velocity);
   spheres_.spin[i].set(spin);
+  account_.set_moving += kinetic_energy(i);
   if (bullet_moves_spheres()) {
     bodies_[static_cast<std::size_t>(id)]->setLinearVelocity(to_bullet(velocity));
     bodies_[static_cast<std::size_t>(id)]->setAngularVelocity(to_bullet(spin));
@@ -164,6 +171,7 @@ void RockWorld::set_mesh_motion(int index, Motion motion) {
 
 void RockWorld::remove_mesh(int index) {
   if (!meshes_[index]) return;
+  mesh_leaves(index);
   removeRigidBody(&meshes_[index]->body());
   meshes_[index].reset();
   scene_changed();
@@ -207,12 +215,19 @@ Energy RockWorld::energy() const {
   Energy e;
   for (int i = 0; i < spheres_.size(); ++i) {
     if (fixed_[i] || spheres_.lost[i]) continue;
-    const double mass = spheres_.velocity[i].w;
-    e.kinetic += 0.5 * mass * spheres_.velocity[i].vec().squaredNorm() +
-                 0.5 * spheres_.spin[i].w * spheres_.spin[i].vec().squaredNorm();
-    e.potential -= mass * settings_.gravity.dot(spheres_.place[i].vec());
+    e.kinetic += kinetic_energy(i);
+    e.potential += gravity_energy(i);
   }
   return e;
+}
+
+double RockWorld::kinetic_energy(int i) const {
+  const Quad &v = spheres_.velocity[i], &w = spheres_.spin[i];
+  return 0.5 * v.w * v.vec().squaredNorm() + 0.5 * w.w * w.vec().squaredNorm();
+}
+
+double RockWorld::gravity_energy(int i) const {
+  return -spheres_.velocity[i].w * settings_.gravity.dot(spheres_.place[i].vec());
 }
 
 btRigidBody* RockWorld::sphere_body(std::int64_t id) {
@@ -238,6 +253,8 @@ void RockWorld::check_spheres(std::span<const int> spheres) {
     ++statistics_.lost_particles;
     statistics_.lost_mass += spheres_.velocity[i].w;
     drop_body(spheres_.id[i]);
+    account_.lost_potential += gravity_energy(i);
+    account_.lost_other += kinetic_energy(i);
     spheres_.velocity[i].set(Vec3::Zero());
     spheres_.spin[i].set(Vec3::Zero());
     sphere_lost(i);

@@ -14,6 +14,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -23,6 +24,7 @@
 #include "sim/io/snapshot.h"
 #include "sim/material/material.h"
 #include "sim/world/breakage.h"
+#include "sim/world/energy_balance.h"
 #include "sim/world/energy_watch.h"
 #include "sim/world/mesh_body.h"
 #include "sim/world/spheres.h"
@@ -60,12 +62,6 @@ struct WorldStatistics {
   std::int64_t crowded_contacts = 0;     ///< mesh contacts left out because a sphere had too many
   std::int64_t asleep = 0;               ///< spheres asleep now
   std::int64_t broken_spheres = 0;       ///< spheres that fragments took the place of
-};
-
-/// Energies of the scene (J).
-struct Energy {
-  double kinetic = 0, potential = 0, elastic = 0;
-  double total() const { return kinetic + potential + elastic; }
 };
 
 /// Parts a Bullet world needs before it is made.
@@ -113,6 +109,9 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   /// Speed (m/s) of a movable sphere (its index) as moving_mass_share() takes it.
   virtual double speed_of(int sphere) const { return spheres_.velocity[sphere].vec().norm(); }
   virtual Energy energy() const;
+  /// The account of energy so far, closed now; none where the engine keeps none (impulse: Bullet's solver
+  /// works with impulses and pushes overlaps apart, so no force has a work that could be summed).
+  virtual std::optional<EnergyBalance> energy_balance() const { return std::nullopt; }
   /// Brings Bullet's bodies and boxes to the present state.
   virtual void update_bullet() {}
   /// The Bullet body of a sphere, by id, in its present state; null when lost.
@@ -133,11 +132,15 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   void set_radius(int sphere, double radius);
   /// Makes the Bullet bodies that are not there yet. The explicit engine needs none to step.
   void make_bodies();
+  double kinetic_energy(int sphere) const;  ///< J
+  double gravity_energy(int sphere) const;  ///< potential, against the origin, J
   virtual void sphere_pushed(int) {}
+  virtual void mesh_leaves(int) {}
   virtual void sphere_lost(int index) = 0;
 
   WorldSettings settings_;
   WorldStatistics statistics_;
+  EnergyAccount account_;
   double time_ = 0;
   Spheres spheres_;
   std::vector<std::uint8_t> fixed_;                     // by index

@@ -67,11 +67,21 @@ void RrlinearWorld::sphere_lost(int index) {
     for (const Neighbour& n : pairs_.neighbours(index))
       if (n.touching() && n.sphere < spheres_.movable) left_alone.push_back(n.sphere);
     wake(left_alone);
+    for (const Neighbour& n : pairs_.neighbours(index))
+      if (!spheres_.lost[n.sphere] && n.touching()) account_.lost_other += held_by(index, n);
+    for (const MeshContact& c : mesh_contacts(index)) account_.lost_other += held_by(c, index);
   }
   pairs_.drop(index);
   sleep_.lose(index, spheres_);
   repair_due_ = true;
   blocks_due_ = true;
+}
+
+// What its contacts hold goes with it.
+void RrlinearWorld::mesh_leaves(int index) {
+  for (int i = 0; i < facets_.rows(); ++i)
+    for (int k = 0; k < facets_.count(i); ++k)
+      if (const MeshContact& c = facets_.contact(i, k); c.body == index) account_.tools -= held_by(c, i);
 }
 
 void RrlinearWorld::advance_to(double end) {
@@ -83,6 +93,7 @@ void RrlinearWorld::advance_to(double end) {
       check_spheres(sleep_.awake());
       if (repair_due_) repair();
       if (!growing_.empty() && time_ >= next_growth_) {
+        before_fragments_ = energy_by_places();
         grow_fragments();
         prepare();
       }
@@ -92,6 +103,7 @@ void RrlinearWorld::advance_to(double end) {
         energy_watch_.take_asleep(potential_energy(i));
         blocks_due_ = true;
       }
+      account_.put_to_sleep += sleep_.put_to_sleep();
       dt_ = stable_step();
     }
     // The last step is cut to end on time; a remainder below a millionth of a step is rounding.
@@ -142,6 +154,8 @@ void RrlinearWorld::prepare() {
   }
 
   pairs_.rebuild(spheres_, order, horizon());
+  if (!before_fragments_) account_for_new(order, sorted_spheres_);
+  sorted_spheres_ = spheres_.size();
   // A sphere that touched a mesh which was taken away has lost its hold.
   std::vector<std::uint8_t> stay_awake = facets_.renumber(order, spheres_, meshes_);
   facets_.set_tool_skin(kToolSkin * smallest_radius_);
@@ -153,6 +167,16 @@ void RrlinearWorld::prepare() {
   dt_ = stable_step();
   steps_to_check_ = 1;  // contacts have their forces then
   energy_watch_.restart();
+  if (before_fragments_) account_.fragments += energy_by_places() - *before_fragments_;
+  before_fragments_.reset();
+}
+
+// Pairs of which one piece, with an index from `known` on before it was sorted in, was put upon the other.
+void RrlinearWorld::account_for_new(const std::vector<int>& order, int known) {
+  if (known == spheres_.size()) return;
+  for (int i = 0; i < pairs_.rows(); ++i)
+    for (const Neighbour& n : pairs_.owned(i))
+      if (order[i] >= known || order[n.sphere] >= known) account_.pressed += held_by(i, n);
 }
 
 void RrlinearWorld::find_watched() {
@@ -204,11 +228,11 @@ void RrlinearWorld::split_awake() {
   for (std::size_t k = 0; k < blocks_.size(); ++k) block_at_[blocks_[k].block] = static_cast<int>(k);
 }
 
-void RrlinearWorld::mesh_forces(BlockWork& work) {
+void RrlinearWorld::mesh_forces(BlockWork& work, double dt) {
   ContactLaw law = law_;
-  FacetList::Contacts contacts;
+  FacetList::Contacts contacts, before;
   work.near_meshes.clear();
-  work.supplied = 0;
+  work.supplied = work.tools = work.pressed = 0;
   for (const int i : work.awake)
     if (facets_.any(i)) work.near_meshes.push_back(i);
   constexpr std::size_t kAhead = 4;  // spheres whose contacts are on their way from memory
@@ -217,6 +241,8 @@ void RrlinearWorld::mesh_forces(BlockWork& work) {
     const int i = work.near_meshes[k];
     const Quad place = spheres_.place[i];
     facets_.load(i, contacts);
+    const int had = facets_.count(i);
+    std::copy_n(contacts.begin(), had, before.begin());
     const MeshContactChanges changes =
         update_mesh_contacts(meshes_, facets_.facets(i), place.vec(), place.w, contacts);
     if (changes.born_inside > 0)
@@ -225,32 +251,69 @@ void RrlinearWorld::mesh_forces(BlockWork& work) {
       __atomic_fetch_add(&statistics_.crowded_contacts, changes.without_slot, __ATOMIC_RELAXED);
     const Vec3 v = spheres_.velocity[i].vec(), w = spheres_.spin[i].vec();
     const FrictionFactors own = friction_.empty() ? FrictionFactors() : friction_[i];
-    int count = 0;
-    for (MeshContact& c : contacts) {
-      if (c.body < 0) break;
+    const ContactStiffness stiffness = ball_facet(law, place.w);
+    ContactMotion motion;
+    double arm = 0;
+    Vec3 point;
+    const auto step_of = [&](MeshContact& c) {
       const MeshBody& body = *meshes_[c.body];
       law.mu = body.surface().mu * own.mu;
       law.mu_r = body.surface().mu_r * own.mu_r;
       law.pull = law_.pull + ContactLaw::pull_of(body.surface().surface_energy);
-      const double arm = std::max(place.w - 0.5 * c.overlap, 0.1 * place.w);
-      const Vec3 normal = -c.normal;  // from the sphere to the surface
-      const Vec3 point = place.vec() + arm * normal;
-      ContactMotion motion;
-      motion.normal = normal;
+      arm = std::max(place.w - 0.5 * c.overlap, 0.1 * place.w);
+      motion.normal = -c.normal;  // from the sphere to the surface
+      point = place.vec() + arm * motion.normal;
       motion.overlap = c.overlap;
-      motion.velocity = body.state().velocity_at(point) - v - arm * w.cross(normal);
+      motion.velocity = body.state().velocity_at(point) - v - arm * w.cross(motion.normal);
       motion.spin = body.state().spin - w;
-      motion.twist = 0.5 * (w + body.state().spin).dot(normal);
+      motion.twist = 0.5 * (w + body.state().spin).dot(motion.normal);
       motion.reduced_mass = spheres_.velocity[i].w;
       motion.dt = last_dt_;
-      const ContactForce f = contact_step(law, ball_facet(law, place.w), motion, c.history);
+      const ContactForce f = contact_step(law, stiffness, motion, c.history);
+      work.losses.add({f.loss.sliding, f.loss.rolling, f.loss.twisting, f.loss.dashpots, 0});
+      return f;
+    };
+    // Where motion alone does not explain an overlap, at a corner or the rim of a face, a contact begins,
+    // shifts or ends while pressed, and brings or takes energy (EnergyAccount::pressed). One that is there at
+    // one end of the step only has half of its force on the way to the overlap that it would have at the
+    // other.
+    const auto opened = [&] { return motion.velocity.dot(motion.normal) * last_dt_; };
+    const auto jump = [&](double overlap, double other) {
+      return 0.5 * (stiffness.kn * overlap * other - law.pull * stiffness.rbar * (overlap + other));
+    };
+    std::array<double, kMeshContactSlots> overlap_before{};  // of those that go on
+    int went_on = 0;
+    for (int slot = 0; slot < had; ++slot) {
+      MeshContact& c = before[static_cast<std::size_t>(slot)];
+      const double overlap = c.overlap;
+      if (changes.went_on >> slot & 1u) {
+        overlap_before[static_cast<std::size_t>(went_on++)] = overlap;
+        continue;
+      }
+      c.overlap = 0;
+      step_of(c);
+      if (const double still = overlap - opened(); still > 0) work.pressed -= jump(overlap, still);
+    }
+    int count = 0;
+    for (MeshContact& c : contacts) {
+      if (c.body < 0) break;
+      const ContactForce f = step_of(c);
       sum_[i].force.add(f.force);
       sum_[i].force.w += 1;
-      sum_[i].torque.add(arm * normal.cross(f.force) + f.rolling);
+      sum_[i].torque.add(arm * motion.normal.cross(f.force) + f.rolling);
       work.overlap_ratio = std::max(work.overlap_ratio, c.overlap / place.w);
-      if (body.motion().moves())
-        work.supplied += std::max(0.0, last_dt_ * (f.force.dot(body.state().velocity_at(point)) +
-                                                   f.rolling.dot(body.state().spin)));
+      if (const MeshBody& body = *meshes_[c.body]; body.motion().moves()) {
+        const double power = f.force.dot(body.state().velocity_at(point)) + f.rolling.dot(body.state().spin);
+        work.supplied += std::max(0.0, last_dt_ * power);
+        work.tools += 0.5 * (last_dt_ + dt) * power;
+      }
+      if (count < went_on) {
+        const double had_overlap = overlap_before[static_cast<std::size_t>(count)];
+        work.pressed += (0.5 * stiffness.kn * (c.overlap + had_overlap) - law.pull * stiffness.rbar) *
+                        (c.overlap - had_overlap + opened());
+      } else if (const double already = c.overlap + opened(); already > 0) {
+        work.pressed += jump(c.overlap, already);
+      }
       ++count;
     }
     // A contact that begins deeper than the sphere moves in a step brings its energy with it.
@@ -263,14 +326,14 @@ void RrlinearWorld::mesh_forces(BlockWork& work) {
   }
 }
 
-void RrlinearWorld::forces() {
+void RrlinearWorld::forces(double dt) {
   if (blocks_due_) split_awake();
   const StepView view{
       spheres_, pairs_,      sleep_,           law_, friction_.empty() ? nullptr : friction_.data(),
       last_dt_, sum_.data(), several_threads()};
   for_blocks([&](BlockWork& work) {
     contact_forces(view, work);
-    mesh_forces(work);
+    mesh_forces(work, dt);
   });
   if (!several_threads()) return;
   for (BlockWork& work : blocks_) work.inbox.clear();
@@ -292,7 +355,7 @@ void RrlinearWorld::move_tools() {
 }
 
 void RrlinearWorld::step(double dt) {
-  forces();
+  forces(dt);
   const double alpha = settings_.material.local_damping,
                in_flight =
                    settings_.material.damping_reach == DampingReach::always ? settings_.flight_damping : 0.0;
@@ -305,12 +368,18 @@ void RrlinearWorld::step(double dt) {
     if (settings_.vibration.on()) supply_of_vibration(work, dt);
   });
   disturbed_.clear();
+  Vec3 momentum = Vec3::Zero();
   for (BlockWork& work : blocks_) {
+    account_.losses.add(work.losses);
+    account_.tools += work.tools;
+    account_.pressed += work.pressed;
+    momentum += work.momentum;
     repair_due_ = repair_due_ || work.left_ball;
     energy_watch_.supply(work.supplied);
     statistics_.largest_overlap_ratio = std::max(statistics_.largest_overlap_ratio, work.overlap_ratio);
     disturbed_.insert(disturbed_.end(), work.disturbed.begin(), work.disturbed.end());
   }
+  account_.shaking += dt * (gravity - settings_.gravity).dot(momentum);
   statistics_.particle_steps += static_cast<double>(sleep_.awake().size());
   wake(disturbed_);
   statistics_.asleep = sleep_.asleep();
@@ -362,6 +431,7 @@ void RrlinearWorld::break_spheres() {
     work.broken.clear();
   }
   if (broken.empty()) return;
+  before_fragments_ = energy_by_places();
   for (const int i : broken)
     for (const Neighbour& n : pairs_.neighbours(i)) {
       if (!n.touching()) continue;
@@ -444,16 +514,12 @@ double RrlinearWorld::stable_step() {
 
 // Of gravity, and of the pull of its contacts with meshes and sleepers, J.
 double RrlinearWorld::potential_energy(int i) const {
-  double energy = -spheres_.velocity[i].w * settings_.gravity.dot(spheres_.place[i].vec());
+  double energy = gravity_energy(i);
   if (law_.pull > 0)
     for (const Neighbour& n : pairs_.neighbours(i))
       if (n.touching() && (n.sphere >= spheres_.movable || spheres_.asleep[n.sphere]))
         energy -= pull_work(i, n);
-  for (int k = 0; k < facets_.count(i); ++k) {
-    const MeshContact c = facets_.contact(i, k);
-    energy -= (law_.pull + ContactLaw::pull_of(meshes_[c.body]->surface().surface_energy)) *
-              spheres_.place[i].w * c.overlap;
-  }
+  for (int k = 0; k < facets_.count(i); ++k) energy -= pull_work(facets_.contact(i, k), i);
   return energy;
 }
 
@@ -462,6 +528,10 @@ double RrlinearWorld::pull_work(int i, const Neighbour& n) const {
   const Quad &a = spheres_.place[i], &b = spheres_.place[n.sphere];
   const double overlap = a.w + b.w - (b.vec() - a.vec()).norm();
   return law_.pull * ball_ball(law_, a.w, b.w).rbar * std::max(overlap, 0.0);
+}
+double RrlinearWorld::pull_work(const MeshContact& c, int i) const {
+  const double pull = law_.pull + ContactLaw::pull_of(meshes_[c.body]->surface().surface_energy);
+  return pull * spheres_.place[i].w * c.overlap;
 }
 
 // Elastic energy of the contact of sphere i with a neighbour, J.
@@ -513,16 +583,31 @@ Energy RrlinearWorld::energy() const {
   Energy e = RockWorld::energy();
   for (int i = 0; i < std::min(spheres_.movable, pairs_.rows()); ++i)  // no rows before the first step
     for (const Neighbour& n : pairs_.owned(i))
-      if (n.touching()) e.elastic += elastic_energy_of(i, n);
+      if (n.touching()) e.elastic += elastic_energy_of(i, n), e.pull -= pull_work(i, n);
   for (int i = 0; i < facets_.rows(); ++i)
-    for (const MeshContact& c : mesh_contacts(i)) e.elastic += elastic_energy_of(c, i);
+    for (const MeshContact& c : mesh_contacts(i))
+      e.elastic += elastic_energy_of(c, i), e.pull -= pull_work(c, i);
   return e;
+}
+
+// The same with contacts that have closed since the last step, and will be known at the next.
+double RrlinearWorld::energy_by_places() const {
+  Energy e = energy();
+  for (int i = 0; i < pairs_.rows(); ++i)
+    for (const Neighbour& n : pairs_.owned(i))
+      if (!n.touching()) e.elastic += held_by(i, n);
+  return e.total();
+}
+
+std::optional<EnergyBalance> RrlinearWorld::energy_balance() const {
+  return EnergyBalance{energy(), account_};
 }
 
 std::vector<MeshContact> RrlinearWorld::mesh_contacts(int index) const {
   std::vector<MeshContact> contacts;
   if (index < facets_.rows())
-    for (int k = 0; k < facets_.count(index); ++k) contacts.push_back(facets_.contact(index, k));
+    for (int k = 0; k < facets_.count(index); ++k)
+      if (const MeshContact& c = facets_.contact(index, k); meshes_[c.body]) contacts.push_back(c);
   return contacts;
 }
 

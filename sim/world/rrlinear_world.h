@@ -29,6 +29,7 @@ class RrlinearWorld final : public RockWorld {
   explicit RrlinearWorld(const WorldSettings& settings);
   void advance_to(double time) override;
   Energy energy() const override;
+  std::optional<EnergyBalance> energy_balance() const override;
   const PairList& pairs() const { return pairs_; }
   /// Contacts of a sphere with meshes now (index as in spheres()).
   std::vector<MeshContact> mesh_contacts(int index) const;
@@ -43,13 +44,14 @@ class RrlinearWorld final : public RockWorld {
   bool bullet_moves_spheres() const override { return false; }
   void sphere_pushed(int index) override;
   void sphere_lost(int index) override;
+  void mesh_leaves(int index) override;
 
  private:
   void prepare();
   void step(double dt);
   void split_awake();
-  void forces();
-  void mesh_forces(BlockWork& work);
+  void forces(double dt);
+  void mesh_forces(BlockWork& work, double dt);
   void move_tools();
   void repair();
   void wake(std::vector<int>& disturbed);
@@ -63,6 +65,11 @@ class RrlinearWorld final : public RockWorld {
   double pull_work(int i, const Neighbour& n) const;
   double elastic_energy_of(int i, const Neighbour& n) const;
   double elastic_energy_of(const MeshContact& c, int i) const;
+  double pull_work(const MeshContact& c, int i) const;
+  double held_by(int i, const Neighbour& n) const { return elastic_energy_of(i, n) - pull_work(i, n); }
+  double held_by(const MeshContact& c, int i) const { return elastic_energy_of(c, i) - pull_work(c, i); }
+  double energy_by_places() const;
+  void account_for_new(const std::vector<int>& order, int known);
   AwakeEnergy awake_energy(const BlockWork& work) const;
   void check_energy();
   double stable_step();
@@ -76,6 +83,7 @@ class RrlinearWorld final : public RockWorld {
   std::vector<FrictionFactors> friction_;  // by sphere; empty without effects on contacts
   Team team_;
   bool changed_ = true;         // spheres or meshes were added or removed
+  int sorted_spheres_ = 0;      // spheres that there were when they were last sorted
   bool repair_due_ = false;     // a sphere has left its ball, or was lost
   double dt_ = 0;               // stable step, s
   double smallest_radius_ = 0;  // of the spheres that move, m
@@ -92,9 +100,10 @@ class RrlinearWorld final : public RockWorld {
   std::vector<int> block_at_;          // by block: its place in blocks_, or -1
   std::vector<int> disturbed_, near_rim_;
   std::vector<GrowingSphere> growing_;
-  std::vector<double> bears_;  // by sphere: energy of a contact that does not break it, J
-  double next_growth_ = 0;     // of fragments, s
-  bool blocks_due_ = true;     // who is awake has changed
+  std::vector<double> bears_;               // by sphere: energy of a contact that does not break it, J
+  double next_growth_ = 0;                  // of fragments, s
+  std::optional<double> before_fragments_;  // energy of the scene before spheres broke or fragments grew, J
+  bool blocks_due_ = true;                  // who is awake has changed
 };
 
 }  // namespace scree

@@ -81,6 +81,7 @@ void Sleep::look(Spheres& s, std::span<const ForceSum> sums, PairList& pairs,
                  const std::vector<std::uint8_t>& stay_awake, const ContactLaw& law, double time,
                  const Vec3& gravity) {
   fallen_asleep_.clear();
+  put_to_sleep_ = 0;
   if (!on_ || time < window_end_) return;
   window_end_ = time + window_;
   const double g = gravity.norm();
@@ -101,6 +102,8 @@ void Sleep::look(Spheres& s, std::span<const ForceSum> sums, PairList& pairs,
     }
     tolerance2_[i] = wake_limit2(i, s, pairs, law, g, wake_tolerance_);
     s.asleep[i] = 1;
+    put_to_sleep_ += 0.5 * s.velocity[i].w * s.velocity[i].vec().squaredNorm() +
+                     0.5 * s.spin[i].w * s.spin[i].vec().squaredNorm();
     s.velocity[i].set(Vec3::Zero());
     s.spin[i].set(Vec3::Zero());
     forget_rest(i, s, pairs);

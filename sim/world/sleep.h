@@ -55,6 +55,8 @@ class Sleep {
   std::int64_t asleep() const { return asleep_; }
   /// Those that the last look() put to sleep.
   std::span<const int> fallen_asleep() const { return fallen_asleep_; }
+  /// Kinetic energy that these had, J.
+  double put_to_sleep() const { return put_to_sleep_; }
   /// Bytes held.
   std::size_t bytes() const {
     return window_start_.capacity() * (sizeof(Vec3) + 2 + sizeof(double)) + awake_.capacity() * sizeof(int);
@@ -71,6 +73,7 @@ class Sleep {
   std::vector<double> tolerance2_;  // N^2
   std::vector<int> awake_, fallen_asleep_;
   std::int64_t asleep_ = 0;
+  double put_to_sleep_ = 0;
 };
 
 }  // namespace scree

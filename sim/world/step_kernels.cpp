@@ -31,6 +31,7 @@ struct alignas(32) Queues {
   Queue<kFull + kTake + kLanes> open;          // did not touch in the last step
   Queue<2 * (kFull + kTake) + kLanes> closed;  // touch
   Lanes overlap_ratio{};
+  BasicContactLoss<Lanes> loss{};
 };
 
 SCREE_INLINE LaneVec3 load4(const Quad* quads, const int* index, Lanes& companion) {
@@ -125,21 +126,31 @@ SCREE_INLINE Motions motions_of(const Spheres& s, const FourContacts& four) {
 }
 
 // Friction of the contacts of four pairs.
-SCREE_INLINE EffectFriction friction_of(const StepView& view, const FourContacts& four, TwinFloats memory) {
+SCREE_INLINE EffectFriction friction_of(const StepView& view, const FourContacts& four) {
   EffectFriction friction;
   for (int k = 0; k < kLanes; ++k) {
     const FrictionFactors &a = view.friction[four.first[k]], &b = view.friction[four.second[k]];
     friction.mu[k] = view.law.mu * a.mu * b.mu;
     friction.mu_r[k] = view.law.mu_r * a.mu_r * b.mu_r;
   }
-  friction.twisting = first_half(memory);
   return friction;
+}
+
+// Adds what the first `count` of four contacts have lost.
+template <bool kEffects>
+SCREE_INLINE void add_loss(const StepView& view, BasicContactLoss<Lanes> loss, int count,
+                           BasicContactLoss<Lanes>& sum) {
+  for (int k = count; k < kLanes; ++k)
+    loss.sliding[k] = loss.rolling[k] = loss.twisting[k] = loss.dashpots[k] = 0;
+  sum.sliding += loss.sliding, sum.rolling += loss.rolling;
+  if (view.law.has_dashpots()) sum.dashpots += loss.dashpots;
+  if constexpr (kEffects) sum.twisting += loss.twisting;
 }
 
 // The law for four contacts, of which the first `count` are there.
 template <bool kEffects>
 SCREE_INLINE void compute(const StepView& view, BlockWork& work, const FourContacts& four, int count,
-                          Lanes& overlap_ratio) {
+                          Queues& queues) {
   const Spheres& s = view.spheres;
   const Lanes zero{}, one = zero + 1.0;
   Lanes r1, r2;
@@ -166,7 +177,7 @@ SCREE_INLINE void compute(const StepView& view, BlockWork& work, const FourConta
                                                                  twin(rim.z_, nothing)};
   motion.twist = (m.spin1 + m.spin2).dot(n) * 0.5f;
   motion.dt = view.last_dt;
-  if (view.law.beta_n > 0 || view.law.beta_s > 0) {
+  if (view.law.has_dashpots()) {
     Lanes m1, m2;
     for (int k = 0; k < kLanes; ++k) {
       m1[k] = s.velocity[four.first[k]].w;
@@ -182,20 +193,21 @@ SCREE_INLINE void compute(const StepView& view, BlockWork& work, const FourConta
   TwinFloats held[kLanes];
   for (int k = 0; k < kLanes; ++k) held[k] = load(*(memory[k] = memories + four.entry[k]->memory()));
   transpose(held[0], held[1], held[2], held[3]);
-  LaneContactHistory history = {held[0], held[1], held[2]};
-  auto friction = [&] {
+  LaneContactHistory history = {{held[0], held[1], held[2]}, held[3]};
+  const auto friction = [&] {
     if constexpr (kEffects)
-      return friction_of(view, four, held[3]);
+      return friction_of(view, four);
     else
       return PlainFriction{view.law.mu, view.law.mu_r};
   }();
   const BasicContactForce<Lanes> f =
       contact_step(view.law, friction, ball_ball<Lanes>(view.law, r1, r2), motion, history);
-  held[0] = history.x_, held[1] = history.y_, held[2] = history.z_, held[3] = TwinFloats{};
-  if constexpr (kEffects) held[3] = twin(friction.twisting, LaneFloats{});
+  held[0] = history.springs.x_, held[1] = history.springs.y_, held[2] = history.springs.z_;
+  held[3] = history.further;
   transpose(held[0], held[1], held[2], held[3]);
   for (int k = 0; k < kLanes; ++k) store(*memory[k], held[k]);
-  overlap_ratio = larger(overlap_ratio, motion.overlap / smaller(r1, r2));
+  queues.overlap_ratio = larger(queues.overlap_ratio, motion.overlap / smaller(r1, r2));
+  add_loss<kEffects>(view, f.loss, count, queues.loss);
 
   const LaneVec3 lever = motion.normal.cross(f.force), moment1 = lever * arm1 + f.rolling,
                  moment2 = lever * arm2 - f.rolling;
@@ -261,7 +273,7 @@ SCREE_INLINE void work_off_as(const StepView& view, BlockWork& work, Queues& que
       four.first[q] = std::min(row, other);
       four.second[q] = std::max(row, other);
     }
-    compute<kEffects>(view, work, four, count, queues.overlap_ratio);
+    compute<kEffects>(view, work, four, count, queues);
   }
   const int left = std::max(closed.count - k, 0);
   for (int q = 0; q < left; ++q) closed.put(q, closed.row[k + q], *closed.entry[k + q]);
@@ -332,7 +344,12 @@ void contact_forces(const StepView& view, BlockWork& work) {
     }
   }
   work_it_off(view, work, queues, true);
-  for (int k = 0; k < kLanes; ++k) work.overlap_ratio = std::max(work.overlap_ratio, queues.overlap_ratio[k]);
+  work.losses = {};
+  for (int k = 0; k < kLanes; ++k) {
+    work.overlap_ratio = std::max(work.overlap_ratio, queues.overlap_ratio[k]);
+    work.losses.add({queues.loss.sliding[k], queues.loss.rolling[k], queues.loss.twisting[k],
+                     queues.loss.dashpots[k], 0});
+  }
 }
 
 SCREE_VECTORISED
@@ -340,10 +357,10 @@ void leapfrog(const LeapfrogView& view, BlockWork& work) {
   Spheres& s = view.spheres;
   const Lanes zero{}, one = zero + 1.0, gravity = {view.gravity.x(), view.gravity.y(), view.gravity.z(), 0},
                       dt = {view.dt, view.dt, view.dt, 0};
-  // f - alpha |f| sign(v); see locally_damped().
-  const auto damped = [&](Lanes f, Lanes v, Lanes alpha) __attribute__((always_inline)) {
+  // alpha |f| sign(v); see locally_damped().
+  const auto damping = [&](Lanes f, Lanes v, Lanes alpha) __attribute__((always_inline)) {
     const Lanes size = pick(f < zero, -f, f), sign = pick(v > zero, one, pick(v < zero, -one, zero));
-    return f - alpha * size * sign;
+    return alpha * size * sign;
   };
   for (const FarForces* far : work.inbox)
     for (const FarForces::Entry& entry : far->entries) {
@@ -352,15 +369,20 @@ void leapfrog(const LeapfrogView& view, BlockWork& work) {
       store(sum.torque, load(sum.torque) + entry.torque);  // the companion of a torque is not used
     }
   bool left = false;
+  Lanes damped = zero, momentum = zero;  // twice the work over dt, and twice the mean momentum
   work.near_rim.clear();
   for (const int i : work.awake) {
     const Lanes force = load(view.sum[i].force), torque = load(view.sum[i].torque);
     Lanes v = load(s.velocity[i]), w = load(s.spin[i]), x = load(s.place[i]);
     const Lanes alpha = zero + (force[3] > 0 ? view.alpha : view.alpha_in_flight);
     const double mass = v[3], inertia = w[3];
-    v += dt / mass * damped(force + mass * gravity, v, alpha);
-    w += dt / inertia * damped(torque, w, alpha);
+    const Lanes pull = force + mass * gravity, shift_damping = damping(pull, v, alpha),
+                turn_damping = damping(torque, w, alpha), v0 = v, w0 = w;
+    v += dt / mass * (pull - shift_damping);
+    w += dt / inertia * (torque - turn_damping);
     x += dt * v;
+    damped += shift_damping * (v0 + v) + turn_damping * (w0 + w);
+    momentum += mass * (v0 + v);
     store(s.velocity[i], v), store(s.spin[i], w), store(s.place[i], x);
     if (const double way_out2 = view.pairs.way_out2(i, s.place[i]); way_out2 > PairList::kNearRim2) {
       work.near_rim.push_back(i);
@@ -368,6 +390,8 @@ void leapfrog(const LeapfrogView& view, BlockWork& work) {
     }
   }
   work.left_ball = left;
+  work.losses.local_damping = 0.5 * view.dt * (damped[0] + damped[1] + damped[2]);
+  work.momentum = 0.5 * Vec3(momentum[0], momentum[1], momentum[2]);
 }
 
 }  // namespace scree

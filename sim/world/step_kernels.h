@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "sim/contact/rrlinear.h"
+#include "sim/world/energy_balance.h"
 #include "sim/world/energy_watch.h"
 #include "sim/world/pair_list.h"
 #include "sim/world/sleep.h"
@@ -35,18 +36,21 @@ struct FarForces {
 
 /// What one block works on and brings back.
 struct BlockWork {
-  int block = 0;                 ///< spheres block * kBlock and on
-  std::span<const int> awake;    ///< spheres of the block that move
-  std::vector<int> near_meshes;  ///< awake spheres of the block that have facets
-  std::vector<int> disturbed;    ///< sleepers that one of its contacts wakes
-  double overlap_ratio = 0;      ///< largest overlap over the smaller radius
-  double supplied = 0;           ///< work of tools, and energy that contacts with meshes brought (J)
-  std::vector<int> broken;       ///< awake spheres that break
-  AwakeEnergy energy;            ///< of its awake spheres, when asked for
-  bool left_ball = false;        ///< a sphere has left its ball (PairList)
-  std::vector<int> near_rim;     ///< those that have, or are near its rim
-  double step2 = 0, travel = 0;  ///< stable step squared (s2) and the step for the longest travel (s)
-  std::vector<FarForces> far;    ///< written down for later blocks (several threads); the first far_blocks
+  int block = 0;                  ///< spheres block * kBlock and on
+  std::span<const int> awake;     ///< spheres of the block that move
+  std::vector<int> near_meshes;   ///< awake spheres of the block that have facets
+  std::vector<int> disturbed;     ///< sleepers that one of its contacts wakes
+  double overlap_ratio = 0;       ///< largest overlap over the smaller radius
+  double supplied = 0;            ///< work of tools, and energy that contacts with meshes brought (J)
+  EnergyLosses losses;            ///< of this step
+  double tools = 0, pressed = 0;  ///< of this step (EnergyAccount), J
+  Vec3 momentum;                  ///< sum of mass times the mean of the velocities before and after, kg m/s
+  std::vector<int> broken;        ///< awake spheres that break
+  AwakeEnergy energy;             ///< of its awake spheres, when asked for
+  bool left_ball = false;         ///< a sphere has left its ball (PairList)
+  std::vector<int> near_rim;      ///< those that have, or are near its rim
+  double step2 = 0, travel = 0;   ///< stable step squared (s2) and the step for the longest travel (s)
+  std::vector<FarForces> far;     ///< written down for later blocks (several threads); the first far_blocks
   std::size_t far_blocks = 0;
   std::span<const FarForces> written_down() const { return std::span(far).first(far_blocks); }
   std::vector<const FarForces*>

@@ -56,6 +56,9 @@ TEST_F(Cli, RunWritesWhatItPromises) {
   for (const auto& seed : summary["per_seed"]) mass += seed["tables"][0]["mass_outside_t"].get<double>();
   EXPECT_NEAR(mass, 20.0, 0.2);
   EXPECT_TRUE(summary["at_rest"].get<bool>());
+  EXPECT_EQ(summary["watch"], "passed");
+  EXPECT_LT(std::abs(summary["energy_error_over_put_in"].get<double>()), 0.01);
+  EXPECT_GT(summary["per_seed"][0]["energy"]["taken_out"]["sliding_j"].get<double>(), 0);
 
   // The resolved scenario is a scenario, and gives the same numbers.
   const Called again =
@@ -70,6 +73,31 @@ TEST_F(Cli, RunWritesWhatItPromises) {
   const Called twice = call("run " + small + " --out " + out.string());
   EXPECT_EQ(twice.code, 2);
   EXPECT_NE(twice.text.find("is there already"), std::string::npos) << twice.text;
+}
+
+// A floor of 1 m, over whose end most of the rock falls.
+TEST_F(Cli, RunThatBreaksTheWatchFails) {
+  const fs::path out = folder / "run";
+  const Called run = call("run " + small + " --set experiment.bench.floor_length_m=1 --out " + out.string());
+  EXPECT_EQ(run.code, 3) << run.text;
+  EXPECT_NE(run.text.find("FAILED: seed 10001: "), std::string::npos) << run.text;
+  const auto summary = nlohmann::json::parse(slurp(out / "summary.json"));
+  EXPECT_EQ(summary["watch"], "FAILED");
+  EXPECT_EQ(summary["failures"].size(), 1u);
+  EXPECT_EQ(summary["per_seed"][0]["watch"], "FAILED");
+  EXPECT_NE(slurp(out / "report.html").find("FAILED: this run does not count"), std::string::npos);
+
+  // In a sweep it has failed, in its own words.
+  const fs::path file = folder / "sweep.yaml";
+  std::ofstream(file) << "scenario: " << SCREE_SOURCE_DIR
+                      << "/scenarios/quick_dump.yaml\nseeds: [10001]\nset: {experiment.payload_t: 5, "
+                         "experiment.bench.height_m: 3, experiment.bench.width_m: 30, "
+                         "experiment.bench.top_length_m: 10}\ndesign: {type: grid, parameters: "
+                         "{experiment.bench.floor_length_m: [1]}}\n";
+  const std::string store = " --store " + (folder / "store.sqlite").string();
+  EXPECT_EQ(call("sweep " + file.string() + store).code, 1);
+  const Called failed = call("sweep " + file.string() + store + " --failed");
+  EXPECT_NE(failed.text.find("of the mass left the model"), std::string::npos) << failed.text;
 }
 
 TEST_F(Cli, NumbersDoNotDependOnThreads) {

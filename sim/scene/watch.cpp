@@ -1,0 +1,35 @@
+#include "sim/scene/watch.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace scree {
+
+std::vector<std::string> watch_failures(const RunOutcome& outcome) {
+  std::vector<std::string> failures;
+  double mass = outcome.statistics.lost_mass;
+  bool finite = true;
+  for (const Grain& grain : outcome.final_state.grains) {
+    mass += grain.mass;
+    finite = finite && grain.position.allFinite() && grain.velocity.allFinite();
+  }
+  if (!finite)
+    failures.emplace_back("a sphere has no finite place or velocity: lower numerics.time_step_safety");
+  if (outcome.energy) {
+    const double error = outcome.energy->relative_error();
+    if (!(std::abs(error) <= kMostEnergyError))  // nor for NaN
+      failures.push_back(
+          fmt::format("the energy balance is open by {:+.2f} % of what was put in, more than {:.0f} %: lower "
+                      "numerics.time_step_safety",
+                      -100 * error, 100 * kMostEnergyError));
+  }
+  if (const double lost = outcome.statistics.lost_mass; lost > kMostLost * mass)
+    failures.push_back(fmt::format(
+        "{:.2f} % of the mass left the model, more than {:.0f} %: widen the bench or its floor, or "
+        "close the container's mesh",
+        100 * lost / mass, 100 * kMostLost));
+  return failures;
+}
+
+}  // namespace scree
