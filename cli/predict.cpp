@@ -86,6 +86,10 @@ int run_predict(const PredictOptions& options) {
     const auto equals = text.find('=');
     const auto number = equals == std::string::npos ? std::nullopt : number_of(text.substr(equals + 1));
     if (!number) return refuse(fmt::format("'{}': write it as material.mu=0.25", text));
+    const std::string name = text.substr(0, equals);
+    if (std::find(sweep.parameters.begin(), sweep.parameters.end(), name) == sweep.parameters.end())
+      return refuse(fmt::format("{}: is no parameter of this sweep; there are {}", name,
+                                fmt::join(sweep.parameters, ", ")));
     if (!asked.emplace(text.substr(0, equals), *number).second)
       return refuse(fmt::format("{} is given twice", text.substr(0, equals)));
   }

@@ -42,6 +42,12 @@ class Checks {
     if (notes_.good({&s_.stop.min_time, &s_.stop.max_time}) && s_.stop.min_time > s_.stop.max_time)
       fail(&s_.stop.min_time, fmt::format("stop.min_time_s: {} is more than stop.max_time_s ({})",
                                           s_.stop.min_time, s_.stop.max_time));
+    const double& interval = s_.output.frame_interval;
+    if (notes_.good({&interval}) && interval > 0 && interval < kLeastFrameInterval)
+      fail(&interval,
+           fmt::format("output.frame_interval_s: {} is out of range; allowed {} s and more, or 0 for the "
+                       "last frame alone",
+                       interval, kLeastFrameInterval));
     sections();
     compare();
   }
@@ -83,6 +89,15 @@ class Checks {
                "{}: about {:.1f} million spheres ({} of {}), more than the {:.0f} million allowed; {}, or "
                "take a grading without its finest part",
                path, count / 1e6, load, grading_->name(), kMaxSpheres / 1e6, cure));
+  }
+
+  /// A load must have a sphere.
+  void smallest(double mass, const void* key, std::string_view path) {
+    if (!grading_ || !notes_.good({key, &s_.material.density})) return;
+    const double least = s_.material.density * std::numbers::pi / 6 * std::pow(grading_->min_diameter(), 3);
+    if (mass < least)
+      fail(key, fmt::format("{}: {:g} kg are less than the smallest sphere of {} ({:g} m, {:g} kg)", path,
+                            mass, grading_->name(), grading_->min_diameter(), least));
   }
 
   void effects() {
@@ -269,6 +284,7 @@ class Checks {
 
   void bucket_dump(const BucketDump& b) {
     if (!notes_.good({&b.mass, &b.buckets})) return;
+    smallest(b.mass, &b.mass, "experiment.mass_kg");
     spheres(b.mass * b.buckets, &b.mass, "experiment.mass_kg",
             fmt::format("{} buckets of {} kg", b.buckets, b.mass), "lower mass_kg or buckets");
     if (!notes_.good({&b.diameter, &b.height})) return;
