@@ -10,6 +10,7 @@
 #include "cli/progress.h"
 #include "cli/run_through.h"
 #include "sim/io/text_file.h"
+#include "sim/material/input_bytes.h"
 
 namespace fs = std::filesystem;
 
