@@ -104,11 +104,7 @@ int run_predict(const PredictOptions& options) {
       return refuse(fmt::format("{}={} is outside of what was simulated, {} to {}", name, value, axes[k].low,
                                 axes[k].high));
     point[static_cast<Eigen::Index>(k)] = axes[k].share(value);
-    asked.erase(name);
   }
-  if (!asked.empty())
-    return refuse(fmt::format("{} is no parameter of this sweep; there are {}", asked.begin()->first,
-                              fmt::join(sweep.parameters, ", ")));
 
   Eigen::MatrixXd x(static_cast<Eigen::Index>(values.size()), static_cast<Eigen::Index>(axes.size()));
   for (std::size_t r = 0; r < values.size(); ++r)

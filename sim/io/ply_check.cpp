@@ -50,6 +50,11 @@ Words words_of(std::string_view line) {
   return words;
 }
 
+/// A line as a message shows it.
+std::string start_of(const Words& words) {
+  return fmt::format("{}", fmt::join(words, " ")).substr(0, 80);
+}
+
 std::optional<std::uint64_t> whole(std::string_view word) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
@@ -81,8 +86,7 @@ class PlyCheck {
       const Words words = words_of(line_);
       if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
       if (words[0] == "end_header") return std::nullopt;
-      if (!understood(words))
-        return fmt::format("is damaged: its header has '{:.80}'", fmt::join(words, " "));
+      if (!understood(words)) return fmt::format("is damaged: its header has '{}'", start_of(words));
     }
     return "is damaged: its header does not end";
   }
@@ -125,8 +129,8 @@ class PlyCheck {
         } while (words.empty() || words[0] == "comment");
         ++found;
         if (!fits(element, words))
-          return fmt::format("is damaged: '{:.80}' has fewer numbers than its header and its lists say",
-                             fmt::join(words, " "));
+          return fmt::format("is damaged: '{}' has fewer numbers than its header and its lists say",
+                             start_of(words));
       }
     return std::nullopt;
   }

@@ -24,6 +24,9 @@ constexpr double kDensestFill = 0.62;
 /// Width and height of a blade below which it is none, m.
 constexpr double kLeastBlade = 1e-3;
 
+/// Time between frames of a trajectory below which it fills any disk, s.
+constexpr double kLeastFrameInterval = 1e-3;
+
 class Checks {
  public:
   Checks(const Scenario& scenario, const fs::path& asset_dir, ReadNotes& notes,
@@ -246,6 +249,7 @@ class Checks {
   /// What holds for all experiments that bring loads over a crest; `what` holds a load.
   template <class Experiment>
   void bench_loads(const Experiment& e, const Vec3& box, const std::string& path, std::string_view what) {
+    smallest(e.payload, &e.payload, "experiment.payload_t");
     if (notes_.good({&e.payload, &e.dumps}))
       spheres(e.payload * e.dumps, &e.payload, "experiment.payload_t",
               fmt::format("{} dumps of {} t", e.dumps, e.payload / 1000), "lower payload_t or dumps");
@@ -276,6 +280,7 @@ class Checks {
 
   void repose_lift(const ReposeLift& r) {
     if (!notes_.good({&r.mass})) return;
+    smallest(r.mass, &r.mass, "experiment.mass_kg");
     spheres(r.mass, &r.mass, "experiment.mass_kg", fmt::format("{} kg", r.mass), "lower mass_kg");
     if (!notes_.good({&r.diameter, &r.height})) return;
     largest(r.diameter, &r.diameter, "experiment.container.diameter_m");

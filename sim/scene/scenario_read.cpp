@@ -416,6 +416,7 @@ class Reader {
 
   const fs::path& asset_dir_;
   bool incomplete_;
+  std::vector<std::string> no_maps_;  // paths, with a point, of groups that are something else
   ReadNotes& notes_;
 };
 
