@@ -49,9 +49,6 @@ std::optional<scree::Scenario> scenario_of(const AnalyseOptions& options) {
     fmt::print(stderr, "--set changes a scenario: --scenario FILE is needed\n");
     return std::nullopt;
   }
-  fmt::print(
-      "note: chi and ratios are against the rock of each pile itself; --scenario FILE gives the grading as "
-      "dumped\n");
   return scenario;
 }
 
@@ -155,11 +152,15 @@ int run_analyse(const AnalyseOptions& options) {
     if (!may_fill(options.out, options.force)) return kBadInput;
   }
   std::map<std::string, std::vector<double>> values;
-  std::vector<std::string> notes;
+  std::vector<std::string> found, notes;
+  if (options.scenario.empty())
+    notes.emplace_back(
+        "chi and ratios are against the rock of each pile itself; --scenario FILE gives the grading as "
+        "dumped");
   try {
     for (const fs::path& file : options.files) {
       scree::SnapshotRead read = scree::read_snapshot(file, *reading);
-      fmt::print("{}: {} grains\n", file.string(), read.snapshot.grains.size());
+      found.push_back(fmt::format("{}: {} grains", file.string(), read.snapshot.grains.size()));
       std::vector<std::string> of_file = read.notes;
       try {
         for (const auto& [name, value] : scree::outputs_of_snapshot(*scenario, std::move(read), of_file))
@@ -181,6 +182,7 @@ int run_analyse(const AnalyseOptions& options) {
       fmt::print(stderr, "--observables {}: these piles do not give it\n", name);
       return kBadInput;
     }
+  for (const std::string& line : found) fmt::print("{}\n", line);
   for (const std::string& note : notes) fmt::print("note: {}\n", note);
   print_table(table);
   return options.out.empty() ? kOk : write_and_check(options, *scenario, table);

@@ -10,6 +10,7 @@
 #include "cli/progress.h"
 #include "cli/run_through.h"
 #include "sim/io/text_file.h"
+#include "sim/material/input_bytes.h"
 
 namespace fs = std::filesystem;
 
@@ -72,9 +73,21 @@ int run_diagnose(const DiagnoseOptions& options) {
   if (!loaded.errors.empty()) return kBadInput;
   std::vector<scree::Dataset> datasets;
   for (const fs::path& file : options.datasets) {
+    std::error_code none;
+    const auto is_same = [&](const fs::path& other) { return fs::equivalent(file, other, none); };
+    if (std::count_if(options.datasets.begin(), options.datasets.end(), is_same) > 1) {
+      fmt::print(stderr, "{}: is given twice; every measurement would count twice\n", file.string());
+      return kBadInput;
+    }
     scree::DatasetResult dataset = scree::load_dataset(file, asset_dir());
     for (const scree::ScenarioError& error : dataset.errors) fmt::print(stderr, "{}\n", error.text());
     if (!dataset.errors.empty()) return kBadInput;
+    for (const scree::Dataset::Experiment& experiment : dataset.dataset.experiments) {
+      const auto reasons = scree::why_not_simulated(loaded.model, experiment, asset_dir());
+      for (const std::string& reason : reasons)
+        fmt::print(stderr, "{}: {}\n", options.model.string(), scree::one_line(reason));
+      if (!reasons.empty()) return kBadInput;
+    }
     datasets.push_back(std::move(dataset.dataset));
   }
   for (const std::string& name : options.without)

@@ -5,10 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <exception>
+#include <new>
 
 #include "cli/commands.h"
 #include "cli/field.h"
 #include "scree_version.h"
+#include "sim/material/input_bytes.h"
 
 volatile std::sig_atomic_t interrupted = 0;
 
@@ -222,7 +224,7 @@ int main(int argc, char** argv) {
   analyse_app
       ->add_option("--relative-uncertainty", analyse.relative_uncertainty,
                    "Standard uncertainty of a value with one repeat, as a share of it")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-6, 1e3));
   analyse_app->footer(
       "\nExamples:\n  scree analyse heap1.csv heap2.csv heap3.csv --scenario scenarios/repose_lab.yaml --out "
       "measured\n"
@@ -333,10 +335,10 @@ int main(int argc, char** argv) {
       fmt::print(stderr,
                  "scree: {}: no such subcommand; there are run, sweep, reproduce, study, calibrate, predict, "
                  "compare, analyse, field, diagnose, twin, validate, effects and schema\n",
-                 argv[1]);
+                 scree::one_line(argv[1]));
       return kBadInput;
     }
-    fmt::print(stderr, "scree: {} (see scree --help)\n", error.what());
+    fmt::print(stderr, "scree: {} (see scree --help)\n", scree::one_line(error.what()));
     return kBadInput;
   }
 
@@ -360,8 +362,11 @@ int main(int argc, char** argv) {
 
     if (*effects_app) return run_effects(effects);
     if (*schema_app) return run_schema();
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "scree: the memory of this machine does not suffice\n");
+    return kFailed;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "scree: {}\n", error.what());
+    fmt::print(stderr, "scree: {}\n", scree::one_line(error.what()));
     return kFailed;
   }
   return kOk;

@@ -86,6 +86,10 @@ int run_predict(const PredictOptions& options) {
     const auto equals = text.find('=');
     const auto number = equals == std::string::npos ? std::nullopt : number_of(text.substr(equals + 1));
     if (!number) return refuse(fmt::format("'{}': write it as material.mu=0.25", text));
+    const std::string name = text.substr(0, equals);
+    if (std::find(sweep.parameters.begin(), sweep.parameters.end(), name) == sweep.parameters.end())
+      return refuse(fmt::format("{}: is no parameter of this sweep; there are {}", name,
+                                fmt::join(sweep.parameters, ", ")));
     if (!asked.emplace(text.substr(0, equals), *number).second)
       return refuse(fmt::format("{} is given twice", text.substr(0, equals)));
   }
@@ -100,11 +104,7 @@ int run_predict(const PredictOptions& options) {
       return refuse(fmt::format("{}={} is outside of what was simulated, {} to {}", name, value, axes[k].low,
                                 axes[k].high));
     point[static_cast<Eigen::Index>(k)] = axes[k].share(value);
-    asked.erase(name);
   }
-  if (!asked.empty())
-    return refuse(fmt::format("{} is no parameter of this sweep; there are {}", asked.begin()->first,
-                              fmt::join(sweep.parameters, ", ")));
 
   Eigen::MatrixXd x(static_cast<Eigen::Index>(values.size()), static_cast<Eigen::Index>(axes.size()));
   for (std::size_t r = 0; r < values.size(); ++r)

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <exception>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -34,12 +35,17 @@ void write_text(const fs::path& file, const std::string& text) {
         fmt::format("{}: cannot be written (disk full, or no permission?)", file.string()));
 }
 
-// The seeds of a run: `count` of them, those of the scenario first.
+constexpr std::uint64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
+
+// The seeds of a run: `count` of them, those of the scenario first; none if the integers end before.
 std::vector<std::uint64_t> chosen_seeds(const scree::Scenario& scenario, int count) {
   std::vector<std::uint64_t> seeds = scenario.seeds;
   if (count == 0) return seeds;
-  while (static_cast<int>(seeds.size()) < count)
-    seeds.push_back(*std::max_element(seeds.begin(), seeds.end()) + 1);
+  while (static_cast<int>(seeds.size()) < count) {
+    const std::uint64_t last = *std::max_element(seeds.begin(), seeds.end());
+    if (last == kLargestSeed) return {};
+    seeds.push_back(last + 1);
+  }
   seeds.resize(static_cast<std::size_t>(count));
   return seeds;
 }
@@ -115,9 +121,14 @@ int run_run(const RunOptions& options) {
                "fragments; add --set output.trajectory=false\n");
     return kBadInput;
   }
+  scenario.seeds = chosen_seeds(scenario, options.seeds);
+  if (scenario.seeds.empty()) {
+    fmt::print(stderr, "--seeds {}: no integers follow the scenario's last seed; give them in its file\n",
+               options.seeds);
+    return kBadInput;
+  }
   const fs::path out = options.out.empty() ? free_run_folder(scenario.name) : options.out;
   if (!prepare_folder(out, options.force)) return kBadInput;
-  scenario.seeds = chosen_seeds(scenario, options.seeds);
   write_text(out / "scenario.yaml", scenario.resolved_yaml);
 
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));

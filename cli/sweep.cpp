@@ -154,6 +154,10 @@ bool can_be_written(const SweepOptions& options, const scree::Sweep& sweep) {
     fmt::print(stderr, "--plot: needs one numeric parameter, or two that form a grid\n");
     return false;
   }
+  if (!options.plot.empty() && options.plot.extension() != ".svg") {
+    fmt::print(stderr, "--plot {}: an SVG is drawn; name it so, FILE.svg\n", options.plot.string());
+    return false;
+  }
   for (const fs::path& file : {options.csv, options.plot}) {
     const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
     std::error_code none;

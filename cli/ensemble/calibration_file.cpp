@@ -64,7 +64,7 @@ void read_targets(const YamlNode& root, const fs::path& file, const std::optiona
       target.scenario = scenario_at(item, file, true, reader).value_or("");
     else if (scenario)
       target.scenario = *scenario;
-    else
+    else if (root.find("scenario") == nullptr)
       reader.fail(item.place, "targets: a scenario is needed, here or for all at the top");
     if (item.find("passing_curve") != nullptr) {
       read_passing_curve(item, file, target.scenario, spec, reader);
@@ -100,8 +100,11 @@ void read_method(const YamlNode& root, CalibrationSpec& spec, FileReader& reader
     reader.integer(*method, "first", static_cast<int>(Emulator::kLeastPoints), 500, spec.first_points);
     reader.integer(*method, "most", 4, static_cast<int>(Emulator::kMostPoints), spec.most_simulations);
     reader.integer(*method, "together", 1, 100, spec.together);
-    if (const YamlEntry* entry = method->find("enough"))
+    if (const YamlEntry* entry = method->find("enough")) {
       spec.enough = reader.number(entry->value, "enough").value_or(spec.enough);
+      if (!(spec.enough > 0))
+        reader.fail(entry->value.place, "enough: must be above 0 (a share of the uncertainty, 0.05)");
+    }
     if (spec.most_simulations < spec.first_points)
       reader.fail(method->place, "method: 'most' must not be below 'first'");
   } else {

@@ -73,7 +73,7 @@ void FileReader::integer(const YamlNode& map, const char* key, int least, int mo
 std::vector<std::uint64_t> FileReader::seeds(const YamlNode& list) {
   std::vector<std::uint64_t> seeds;
   for (const YamlNode& item : list.items) {
-    const auto seed = whole(item, "seeds", 0, 9007199254740992.0);  // 2^53: exact as a double
+    const auto seed = whole(item, "seeds", 0, 9007199254740991.0);  // 2^53 - 1: a double is exact up to it
     if (!seed) continue;
     if (std::find(seeds.begin(), seeds.end(), *seed) != seeds.end())
       fail(item.place, fmt::format("seeds: {} stands twice", *seed));
@@ -107,15 +107,18 @@ std::vector<FileReader::Span> FileReader::spans(const YamlNode& map) {
 Variation read_variation(const YamlNode& root, const std::vector<std::string>& parameters,
                          FileReader& reader) {
   Variation variation;
-  if (const YamlNode* set = reader.map_at(root, "set", false, "a map of keys of the scenario"))
-    for (const YamlEntry& entry : set->entries)
-      if (const auto value = reader.scalar(entry.value, "set." + entry.key))
-        variation.fixed.push_back(entry.key + "=" + *value);
-  const YamlNode* ties = reader.map_at(root, "ties", false, "a map from a key to the one it follows");
-  if (ties == nullptr) return variation;
   const auto is_parameter = [&](const std::string& key) {
     return std::find(parameters.begin(), parameters.end(), key) != parameters.end();
   };
+  if (const YamlNode* set = reader.map_at(root, "set", false, "a map of keys of the scenario"))
+    for (const YamlEntry& entry : set->entries) {
+      if (is_parameter(entry.key))
+        reader.fail(entry.key_place, fmt::format("set.{}: is a parameter itself", entry.key));
+      if (const auto value = reader.scalar(entry.value, "set." + entry.key))
+        variation.fixed.push_back(entry.key + "=" + *value);
+    }
+  const YamlNode* ties = reader.map_at(root, "ties", false, "a map from a key to the one it follows");
+  if (ties == nullptr) return variation;
   for (const YamlEntry& entry : ties->entries) {
     const auto leader = reader.scalar(entry.value, "ties." + entry.key);
     if (!leader) continue;

@@ -47,7 +47,8 @@ struct Variation {
   std::vector<std::pair<std::string, std::string>> ties;  ///< the first key takes the value of the second
 };
 
-/// Reads `set` and `ties`; the keys followed must be among `parameters`, those that follow must not.
+/// Reads `set` and `ties`; the keys followed must be among `parameters`, those that follow or are set must
+/// not.
 Variation read_variation(const YamlNode& root, const std::vector<std::string>& parameters,
                          FileReader& reader);
 

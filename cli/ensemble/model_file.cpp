@@ -98,22 +98,21 @@ void read_experiments(const YamlNode& root, const fs::path& file, const fs::path
   }
 }
 
-// What would be refused only in the middle of a design: both ends of every parameter, in every experiment.
-void check_ends(const DiagnosisModel& model, const fs::path& asset_dir, const Place& place,
-                FileReader& reader) {
-  for (const ModelExperiment& each : model.experiments)
-    for (const double end : {-1.0, 1.0}) {
-      const ModelPoint point{Eigen::VectorXd::Constant(static_cast<Eigen::Index>(model.base.size()), end),
-                             {}};
-      const ScenarioResult loaded = load_scenario(
-          each.experiment.file, overrides_at(model, {model.base, {}}, each.experiment, point), asset_dir);
-      for (const ScenarioError& error : loaded.errors)
-        reader.fail(place, fmt::format("experiment {}: {}", each.experiment.name, error.text()));
-      if (!loaded.errors.empty()) return;
-    }
-}
-
 }  // namespace
+
+std::vector<std::string> why_not_simulated(const DiagnosisModel& model, const Dataset::Experiment& experiment,
+                                           const fs::path& asset_dir) {
+  std::vector<std::string> reasons;
+  for (const double end : {-1.0, 1.0}) {
+    const ModelPoint point{Eigen::VectorXd::Constant(static_cast<Eigen::Index>(model.base.size()), end), {}};
+    const ScenarioResult loaded =
+        load_scenario(experiment.file, overrides_at(model, {model.base, {}}, experiment, point), asset_dir);
+    for (const ScenarioError& error : loaded.errors)
+      reasons.push_back(fmt::format("experiment {}: {}", experiment.name, error.text()));
+    if (!reasons.empty()) break;
+  }
+  return reasons;
+}
 
 DiagnosisModelResult load_model(const fs::path& file, const fs::path& asset_dir) {
   DiagnosisModelResult result;
@@ -142,7 +141,10 @@ DiagnosisModelResult load_model(const fs::path& file, const fs::path& asset_dir)
   model.simulations.base =
       std::max(model.simulations.base, ResponseSurface::least_base_runs(model.base.size()));
   read_experiments(*root, file, asset_dir, model, reader);
-  if (reader.good()) check_ends(model, asset_dir, root->place, reader);
+  if (!reader.good()) return result;
+  for (const ModelExperiment& each : model.experiments)
+    for (const std::string& reason : why_not_simulated(model, each.experiment, asset_dir))
+      reader.fail(root->place, reason);
   return result;
 }
 

@@ -53,6 +53,11 @@ struct DiagnosisModelResult {
 /// The experiments are for twins and may be left out.
 DiagnosisModelResult load_model(const std::filesystem::path& file, const std::filesystem::path& asset_dir);
 
+/// What would be refused only in the middle of a design: reasons why the experiment is no scenario at an end of
+/// the parameters' ranges; none if all is well.
+std::vector<std::string> why_not_simulated(const DiagnosisModel& model, const Dataset::Experiment& experiment,
+                                           const std::filesystem::path& asset_dir);
+
 /// The space that a diagnosis of these experiments searches: the model's effects that act in any of them,
 /// less those of `without`.
 ModelSpace space_of(const DiagnosisModel& model, const std::vector<Dataset::Experiment>& experiments,

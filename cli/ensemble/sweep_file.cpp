@@ -34,8 +34,14 @@ void read_grid(const YamlNode& design, Sweep& sweep, FileReader& reader) {
                   fmt::format("{}: a list of values is expected, found {}", entry.key, found(entry.value)));
       continue;
     }
-    for (const YamlNode& item : entry.value.items)
-      if (const auto value = reader.scalar(item, entry.key)) values.back().push_back(*value);
+    for (const YamlNode& item : entry.value.items) {
+      const auto value = reader.scalar(item, entry.key);
+      if (!value) continue;
+      const auto is_same = [&](const std::string& other) { return same_value(other, *value); };
+      if (std::any_of(values.back().begin(), values.back().end(), is_same))
+        reader.fail(item.place, fmt::format("{}: {} stands twice", entry.key, *value));
+      values.back().push_back(*value);
+    }
     count *= std::max<std::size_t>(1, values.back().size());
     if (count > kMostPoints)
       return reader.fail(entry.key_place, fmt::format("more than {} points; that is no sweep", kMostPoints));
@@ -73,6 +79,12 @@ void read_list(const YamlNode& design, Sweep& sweep, FileReader& reader) {
         point.values.push_back(*value);
     }
     reader.allow(item, sweep.parameters, " in a point");
+    const auto is_same = [&](const SweepPoint& other) {
+      return std::equal(other.values.begin(), other.values.end(), point.values.begin(), point.values.end(),
+                        same_value);
+    };
+    if (std::any_of(sweep.points.begin(), sweep.points.end(), is_same))
+      reader.fail(item.place, "points: this one stands twice");
     sweep.points.push_back(std::move(point));
   }
 }
@@ -136,6 +148,11 @@ void name_cases(const YamlEntry& entry, const fs::path& asset_dir, Sweep& sweep,
 }
 
 }  // namespace
+
+bool same_value(const std::string& a, const std::string& b) {
+  double x = 0, y = 0;
+  return parse_number(a, x) == Parsed::yes && parse_number(b, y) == Parsed::yes ? x == y : a == b;
+}
 
 SweepResult load_sweep(const fs::path& file, const fs::path& asset_dir) {
   SweepResult result;

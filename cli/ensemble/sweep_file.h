@@ -16,6 +16,9 @@ struct SweepPoint {
   Scenario scenario;                ///< with these values, checked; its seeds are those to run
 };
 
+/// 0.2 and 0.20 are the same value of a parameter.
+bool same_value(const std::string& a, const std::string& b);
+
 struct Sweep {
   std::string name;                     ///< the file's stem
   std::vector<std::string> parameters;  ///< dotted keys of the scenario: material.mu

@@ -5,14 +5,15 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <map>
+#include <sstream>
 #include <stdexcept>
 
 #include "analysis/outputs.h"
 #include "cli/ensemble/run_request.h"
 #include "sim/io/text_file.h"
+#include "sim/material/input_bytes.h"
 
 namespace scree {
 namespace {
@@ -59,12 +60,6 @@ std::optional<Number> number(const std::string& text) {
   if constexpr (std::is_floating_point_v<Number>)
     if (!std::isfinite(value)) return std::nullopt;
   return value;
-}
-
-// 0.2 and 0.20 are the same value.
-bool same_value(const std::string& a, const std::string& b) {
-  const auto x = number<double>(a), y = number<double>(b);
-  return x && y ? *x == *y : a == b;
 }
 
 // `run`: the numbers of some run.
@@ -157,8 +152,7 @@ void write_sweep_csv(const Sweep& sweep, const std::vector<PointResults>& points
 }
 
 std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const fs::path& file, bool refuse_others) {
-  std::ifstream in(file);
-  if (!in) throw std::runtime_error(fmt::format("{}: cannot be opened", file.string()));
+  std::istringstream in(read_input_text(file));
   std::vector<PointResults> points;
   for (const SweepPoint& point : sweep.points)
     points.push_back({&point, point.scenario.seeds,
@@ -166,9 +160,7 @@ std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const fs::path& fil
 
   std::string line;
   int at_line = 0;
-  const auto fail = [&](const std::string& what) {
-    throw std::runtime_error(fmt::format("{}:{}: {}", file.string(), at_line, what));
-  };
+  const auto fail = [&](const std::string& what) { throw FileError(file, at_line, what); };
   std::vector<std::string> header;
   const std::size_t first = sweep.parameters.size();
   while (std::getline(in, line)) {
@@ -185,6 +177,9 @@ std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const fs::path& fil
       if (header.size() < expected.size() + 1 ||
           !std::equal(expected.begin(), expected.end(), header.begin()) || header.back() != "message")
         fail(fmt::format("not a table of this sweep: its columns begin with {}", fmt::join(expected, ",")));
+      for (auto name = header.begin(); name != header.end(); ++name)
+        if (std::find(header.begin(), name, *name) != name)
+          fail(fmt::format("the column {} stands twice", *name));
       continue;
     }
     if (fields.size() != header.size())
@@ -197,7 +192,11 @@ std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const fs::path& fil
       fail(fmt::format("state '{}' is none of done, failed, running, not run", fields[first + 1]));
     run.state = fields[first + 1] == "done" ? RunState::done : RunState::failed;
     run.version = fields[first + 2];
-    run.wall_seconds = number<double>(fields[first + 3]).value_or(0);
+    if (const std::string& text = fields[first + 3]; !text.empty()) {
+      const auto seconds = number<double>(text);
+      if (!seconds) fail(fmt::format("wall_seconds '{}' is no number", text));
+      run.wall_seconds = *seconds;
+    }
     run.message = fields.back();
     for (std::size_t k = first + 4; k + 1 < fields.size(); ++k) {
       if (fields[k].empty()) continue;
@@ -211,14 +210,19 @@ std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const fs::path& fil
         continue;
       known = true;
       const auto found = std::find(point.seeds.begin(), point.seeds.end(), *seed);
-      if (found != point.seeds.end()) point.runs[static_cast<std::size_t>(found - point.seeds.begin())] = run;
+      if (found == point.seeds.end()) continue;
+      auto& place = point.runs[static_cast<std::size_t>(found - point.seeds.begin())];
+      if (place)
+        fail(fmt::format("the run of seed {} at {} stands twice", *seed,
+                         fmt::join(point.point->values, ", ")));
+      place = run;
     }
     if (!known && refuse_others)
       fail(fmt::format("{} is no point of sweep {}",
                        fmt::join(fields.begin(), fields.begin() + static_cast<std::ptrdiff_t>(first), ", "),
                        sweep.name));
   }
-  if (header.empty()) fail("the file is empty");
+  if (header.empty()) fail("there is no header");
   return points;
 }
 

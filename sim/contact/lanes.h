@@ -1,7 +1,7 @@
 #pragma once
 // Four contacts side by side in vector registers: four doubles, or twice four floats.
 //
-// Vector types of the compiler (GCC), so the same source runs everywhere: functions that use them
+// Vector types of the compiler (GCC, clang), so the same source runs everywhere: functions that use them
 // are compiled for several instruction sets and the best is chosen when the program starts
 // (SCREE_VECTORISED). Every lane does what one number would do, without fused operations, so the numbers are
 // the same on all of them.
@@ -12,7 +12,8 @@
 
 /// Marks a function to be compiled for AVX-512, AVX2 and the base instruction set. All that it calls must be
 /// inlined.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__x86_64__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
 #define SCREE_VECTORISED __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
 #else
 #define SCREE_VECTORISED
@@ -144,35 +145,34 @@ SCREE_INLINE void store(Quad& q, Lanes v) {
 }
 /// Turns four quads into their x, y, z, w, or back; of twins both halves.
 SCREE_INLINE void transpose(TwinFloats& a, TwinFloats& b, TwinFloats& c, TwinFloats& d) {
-  const TwinFloats t0 = __builtin_shuffle(a, b, TwinMask{0, 8, 1, 9, 4, 12, 5, 13}),
-                   t1 = __builtin_shuffle(a, b, TwinMask{2, 10, 3, 11, 6, 14, 7, 15}),
-                   t2 = __builtin_shuffle(c, d, TwinMask{0, 8, 1, 9, 4, 12, 5, 13}),
-                   t3 = __builtin_shuffle(c, d, TwinMask{2, 10, 3, 11, 6, 14, 7, 15});
-  a = __builtin_shuffle(t0, t2, TwinMask{0, 1, 8, 9, 4, 5, 12, 13});
-  b = __builtin_shuffle(t0, t2, TwinMask{2, 3, 10, 11, 6, 7, 14, 15});
-  c = __builtin_shuffle(t1, t3, TwinMask{0, 1, 8, 9, 4, 5, 12, 13});
-  d = __builtin_shuffle(t1, t3, TwinMask{2, 3, 10, 11, 6, 7, 14, 15});
+  const TwinFloats t0 = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13),
+                   t1 = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15),
+                   t2 = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13),
+                   t3 = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+  a = __builtin_shufflevector(t0, t2, 0, 1, 8, 9, 4, 5, 12, 13);
+  b = __builtin_shufflevector(t0, t2, 2, 3, 10, 11, 6, 7, 14, 15);
+  c = __builtin_shufflevector(t1, t3, 0, 1, 8, 9, 4, 5, 12, 13);
+  d = __builtin_shufflevector(t1, t3, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 SCREE_INLINE void transpose(LaneFloats& a, LaneFloats& b, LaneFloats& c, LaneFloats& d) {
-  typedef int Index __attribute__((vector_size(16)));
-  const LaneFloats t0 = __builtin_shuffle(a, b, Index{0, 4, 1, 5}),
-                   t1 = __builtin_shuffle(a, b, Index{2, 6, 3, 7});
-  const LaneFloats t2 = __builtin_shuffle(c, d, Index{0, 4, 1, 5}),
-                   t3 = __builtin_shuffle(c, d, Index{2, 6, 3, 7});
-  a = __builtin_shuffle(t0, t2, Index{0, 1, 4, 5});
-  b = __builtin_shuffle(t0, t2, Index{2, 3, 6, 7});
-  c = __builtin_shuffle(t1, t3, Index{0, 1, 4, 5});
-  d = __builtin_shuffle(t1, t3, Index{2, 3, 6, 7});
+  const LaneFloats t0 = __builtin_shufflevector(a, b, 0, 4, 1, 5),
+                   t1 = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  const LaneFloats t2 = __builtin_shufflevector(c, d, 0, 4, 1, 5),
+                   t3 = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+  a = __builtin_shufflevector(t0, t2, 0, 1, 4, 5);
+  b = __builtin_shufflevector(t0, t2, 2, 3, 6, 7);
+  c = __builtin_shufflevector(t1, t3, 0, 1, 4, 5);
+  d = __builtin_shufflevector(t1, t3, 2, 3, 6, 7);
 }
 SCREE_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
-  const Lanes t0 = __builtin_shuffle(a, b, LaneMask{0, 4, 2, 6});
-  const Lanes t1 = __builtin_shuffle(a, b, LaneMask{1, 5, 3, 7});
-  const Lanes t2 = __builtin_shuffle(c, d, LaneMask{0, 4, 2, 6});
-  const Lanes t3 = __builtin_shuffle(c, d, LaneMask{1, 5, 3, 7});
-  a = __builtin_shuffle(t0, t2, LaneMask{0, 1, 4, 5});
-  b = __builtin_shuffle(t1, t3, LaneMask{0, 1, 4, 5});
-  c = __builtin_shuffle(t0, t2, LaneMask{2, 3, 6, 7});
-  d = __builtin_shuffle(t1, t3, LaneMask{2, 3, 6, 7});
+  const Lanes t0 = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+  const Lanes t1 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Lanes t2 = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+  const Lanes t3 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  a = __builtin_shufflevector(t0, t2, 0, 1, 4, 5);
+  b = __builtin_shufflevector(t1, t3, 0, 1, 4, 5);
+  c = __builtin_shufflevector(t0, t2, 2, 3, 6, 7);
+  d = __builtin_shufflevector(t1, t3, 2, 3, 6, 7);
 }
 
 }  // namespace scree

@@ -5,32 +5,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 namespace scree {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
 bool is_blank(char c) {
   return c == ' ' || c == '\t';
-}
-
-// What a file is by its first bytes, where that is no text.
-const char* kind_of_binary(std::string_view bytes) {
-  const auto begins = [&](std::string_view mark) { return bytes.substr(0, mark.size()) == mark; };
-  if (begins("\x89PNG") || begins("\xFF\xD8\xFF") || begins("GIF8") || begins("BM") || begins("II*") ||
-      begins("MM"))
-    if (bytes.substr(0, 4096).find('\0') != std::string_view::npos || begins("\xFF\xD8\xFF"))
-      return "a picture, no text";
-  if (begins("PK\x03\x04")) return "a spreadsheet or an archive, no text; save it as CSV";
-  if (begins("\x1F\x8B")) return "compressed; unpack it first";
-  if (begins("%PDF")) return "a PDF, no table";
-  if (begins("\x89HDF")) return "HDF5, no text";
-  if (begins("\xFF\xFE") || begins("\xFE\xFF")) return "UTF-16; save it as UTF-8";
-  if (bytes.substr(0, 4096).find('\0') != std::string_view::npos) return "binary, no text";
-  return nullptr;
 }
 
 std::string in_quotes(std::string_view text) {
@@ -38,28 +18,6 @@ std::string in_quotes(std::string_view text) {
 }
 
 }  // namespace
-
-FileError::FileError(const std::filesystem::path& file_, int line_, const std::string& message_)
-    : std::runtime_error(line_ > 0 ? fmt::format("{}:{}: {}", file_.string(), line_, message_)
-                                   : fmt::format("{}: {}", file_.string(), message_)),
-      file(file_.string()),
-      line(line_),
-      message(message_) {}
-
-std::string read_input_bytes(const std::filesystem::path& file) {
-  std::error_code none;
-  if (!std::filesystem::exists(file, none)) throw FileError(file, 0, "there is no such file");
-  if (!std::filesystem::is_regular_file(file, none)) throw FileError(file, 0, "is no file");
-  std::ifstream in(file, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  if (!in) throw FileError(file, 0, "cannot be read (no permission?)");
-  if (bytes.empty()) throw FileError(file, 0, "the file is empty");
-  return bytes;
-}
-
-void require_text(const std::filesystem::path& file, std::string_view bytes) {
-  if (const char* kind = kind_of_binary(bytes)) throw FileError(file, 0, fmt::format("is {}", kind));
-}
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
@@ -91,11 +49,8 @@ std::optional<double> number_in(std::string_view text, bool comma) {
 }
 
 DelimitedTable::DelimitedTable(const std::filesystem::path& file)
-    : file_(file), text_(read_input_bytes(file)) {
-  require_text(file, text_);
-  if (text_.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0) at_ = kByteOrderMark.size();
+    : file_(file), text_(read_input_text(file)) {
   // The separator is the header's; read it once to see which.
-  const std::size_t start = at_;
   separator_ = '\n';
   if (!read_row()) throw FileError(file, 0, "the file has no header");
   const std::string head = fields_.front();
@@ -104,7 +59,7 @@ DelimitedTable::DelimitedTable(const std::filesystem::path& file)
     if (candidate == ' ' || head.find(candidate) != std::string::npos) break;
   }
   if (separator_ == ' ' && trimmed(head).find(' ') == std::string_view::npos) separator_ = ',';  // one column
-  at_ = start, line_ = 1;
+  at_ = 0, line_ = 1;
   read_row();
   header_line_ = row_line_;
   header_.assign(fields_.begin(), fields_.begin() + static_cast<std::ptrdiff_t>(used_));

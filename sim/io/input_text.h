@@ -1,27 +1,14 @@
 #pragma once
-// Reading files that others made: text that is checked to be text, and tables.
+// Reading tables that others made.
 #include <filesystem>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "sim/material/input_bytes.h"
+
 namespace scree {
-
-/// Something wrong in a file that was read; what() is `file:line: message`, or `file: message` with line 0.
-struct FileError : std::runtime_error {
-  FileError(const std::filesystem::path& file, int line, const std::string& message);
-  std::string file;
-  int line;  ///< from 1
-  std::string message;
-};
-
-/// The bytes of a file. Throws FileError if there is none, or nothing in it.
-std::string read_input_bytes(const std::filesystem::path& file);
-
-/// Throws FileError for what is no text: a picture, an archive, another encoding than UTF-8.
-void require_text(const std::filesystem::path& file, std::string_view bytes);
 
 /// A decimal number and nothing else, not infinite; with `comma`, a decimal comma is one too.
 std::optional<double> number_in(std::string_view text, bool comma = false);

@@ -21,6 +21,7 @@
 #include <unordered_map>
 
 #include "sim/io/mesh_orient.h"
+#include "sim/io/ply_check.h"
 
 namespace scree {
 namespace {
@@ -50,11 +51,8 @@ std::string counted(std::size_t count, const std::string& noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  }
-  while (!text.empty() && (text.back() == ' ' || text.back() == '.')) text.pop_back();
+std::string without_full_stop(std::string text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ' || text.back() == '.')) text.pop_back();
   return text;
 }
 
@@ -97,61 +95,6 @@ std::optional<std::string> stl_refusal(const fs::path& file) {
   if (got < sizeof header) return "is not an STL file: too short";
   return fmt::format("is not an STL file, or cut short: it announces {} and has room for {}",
                      counted(announced, "triangle"), (size - stl_header_bytes) / stl_triangle_bytes);
-}
-
-/// Bytes of a PLY number type, 0 when unknown.
-std::uintmax_t ply_bytes(const std::string& type) {
-  if (type == "char" || type == "uchar" || type == "int8" || type == "uint8") return 1;
-  if (type == "short" || type == "ushort" || type == "int16" || type == "uint16") return 2;
-  if (type == "int" || type == "uint" || type == "float" || type == "int32" || type == "uint32" ||
-      type == "float32") {
-    return 4;
-  }
-  return type == "double" || type == "float64" ? 8 : 0;
-}
-
-/// assimp reads a PLY without end of header for ever, and fills up one that is cut short. So the header must
-/// end, and the file must hold a line (ASCII) or the least number of bytes (binary, empty lists) for all that
-/// it announces.
-std::optional<std::string> ply_refusal(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string line, word, type;
-  if (!std::getline(stream, line) || line.compare(0, 3, "ply") != 0) return "is not a PLY file";
-  bool ascii = false, ended = false;
-  std::uintmax_t lines = 0, bytes = 0, count = 0;
-  while (!ended && std::getline(stream, line)) {
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    std::istringstream words(line);
-    words >> word;
-    if (line == "end_header") {
-      ended = true;
-    } else if (word == "format") {
-      words >> type;
-      ascii = type == "ascii";
-    } else if (word == "element") {
-      if (!(words >> type >> count) || count > max_file_bytes)
-        return "is damaged: its header has '" + one_line(line) + "'";
-      lines += count;
-    } else if (word == "property") {
-      words >> type;
-      if (type == "list") words >> type;
-      if (ply_bytes(type) == 0) return "is damaged: its header has '" + one_line(line) + "'";
-      bytes += count * ply_bytes(type);
-    }
-    word.clear();
-  }
-  if (!ended) return "is damaged: its header does not end";
-  if (!ascii) {
-    const std::uintmax_t rest = fs::file_size(file) - static_cast<std::uintmax_t>(stream.tellg());
-    if (rest >= bytes) return std::nullopt;
-    return fmt::format("is cut short: it announces at least {} bytes of data and has {}", bytes, rest);
-  }
-  std::uintmax_t found = 0;
-  while (std::getline(stream, line)) {
-    if (line.find_first_not_of(" \t\r") != std::string::npos && line.compare(0, 7, "comment") != 0) ++found;
-  }
-  if (found >= lines) return std::nullopt;
-  return fmt::format("is cut short: it announces {} lines of data and has {}", lines, found);
 }
 
 /// Opens what the mesh file refers to (buffers of glTF, materials of OBJ) under the rules for the mesh file.
@@ -424,14 +367,14 @@ LoadedMesh load_mesh(const fs::path& file, double scale, double max_size) {
     if (const auto complaint = stl_refusal(file)) return fail(": " + *complaint);
   }
   if (extension == "ply") {
-    if (const auto complaint = ply_refusal(file)) return fail(": " + *complaint);
+    if (const auto complaint = ply_complaint(file)) return fail(": " + *complaint);
   }
 
   std::size_t left_out = 0;
   try {
     left_out = read_with_assimp(file, extension, mesh);
   } catch (const std::exception& error) {
-    return fail(fmt::format(": cannot be read as {} ({})", extension, one_line(error.what())));
+    return fail(fmt::format(": cannot be read as {} ({})", extension, without_full_stop(error.what())));
   }
   for (Vec3& vertex : mesh.vertices) vertex *= scale;
   drop_unused_vertices(mesh);

@@ -86,7 +86,9 @@ RawSnapshot read_lammps_dump(const std::filesystem::path& file, std::string_view
   double low[3] = {0, 0, 0}, length[3] = {1, 1, 1};
   bool has_box = false;
   Columns columns;
+  int line_of_columns = 0;
   while (true) {
+    const int line_of_item = cursor.line();
     const std::string_view item = cursor.next_line();
     const auto is = [&](std::string_view what) { return item.substr(0, what.size()) == what; };
     if (is(kFrame)) {
@@ -107,6 +109,7 @@ RawSnapshot read_lammps_dump(const std::filesystem::path& file, std::string_view
       has_box = !tilted;
     } else if (is("ITEM: ATOMS")) {
       columns = columns_of(words_of(item.substr(11)));
+      line_of_columns = line_of_item;
       break;
     } else if (is("ITEM:")) {  // UNITS, TIME: one line
       cursor.next_line();
@@ -115,12 +118,13 @@ RawSnapshot read_lammps_dump(const std::filesystem::path& file, std::string_view
     }
   }
   if (!count) cursor.fail("ITEM: NUMBER OF ATOMS is missing");
+  const auto lacks = [&](const char* what) { throw FileError(file, line_of_columns, what); };
   for (int axis = 0; axis < 3; ++axis) {
-    if (columns.position[axis] < 0) cursor.fail("ITEM: ATOMS has no x, y, z");
-    if (columns.scaled[axis] && !has_box) cursor.fail("scaled coordinates need an upright box: dump x y z");
+    if (columns.position[axis] < 0) lacks("ITEM: ATOMS has no x, y, z");
+    if (columns.scaled[axis] && !has_box) lacks("scaled coordinates need an upright box: dump x y z");
   }
   if (columns.diameter < 0 && columns.radius < 0)
-    cursor.fail("no radius: dump the atoms with radius or diameter (dump custom ... id x y z radius)");
+    lacks("no radius: dump the atoms with radius or diameter (dump custom ... id x y z radius)");
   raw.has_mass = columns.mass >= 0, raw.has_id = columns.id >= 0, raw.has_dump = columns.dump >= 0;
 
   std::vector<double> row(columns.count);

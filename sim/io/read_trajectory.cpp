@@ -9,6 +9,8 @@
 namespace scree {
 namespace {
 
+constexpr double kMostUnpacked = 1100;  // values a stored byte
+
 class Trajectory {
  public:
   explicit Trajectory(const std::filesystem::path& file)
@@ -38,9 +40,7 @@ class Trajectory {
   /// All of a data set.
   template <typename T>
   std::vector<T> all(const char* name, hid_t type) const {
-    hsize_t n = 1;
-    for (const hsize_t size : shape(name)) n *= size;
-    std::vector<T> values(n);
+    std::vector<T> values(values_in(name, shape(name)));
     if (H5Dread(open(name), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) fail(name);
     return values;
   }
@@ -49,6 +49,7 @@ class Trajectory {
   std::vector<double> frame(const char* name, hsize_t index) const {
     const H5Handle set = open(name);
     std::vector<hsize_t> count = shape(name), start(count.size(), 0);
+    values_in(name, count);
     count.front() = 1;
     start.front() = index;
     hsize_t n = 1;
@@ -66,6 +67,16 @@ class Trajectory {
   }
 
  private:
+  /// How many values a shape has. A file of few bytes can announce any number: no more are believed than what
+  /// it stores can unpack to (deflate: 1032 to 1).
+  std::size_t values_in(const char* name, const std::vector<hsize_t>& sizes) const {
+    const double stored = static_cast<double>(H5Dget_storage_size(open(name)));
+    double n = 1;
+    for (const hsize_t size : sizes) n *= static_cast<double>(size);
+    if (n > kMostUnpacked * stored) fail(fmt::format("{}: announces {:g} values and", name, n));
+    return static_cast<std::size_t>(n);
+  }
+
   H5Handle open(const char* name) const {
     if (!has(name)) fail(name);
     H5Handle set(H5Dopen2(file_, name, H5P_DEFAULT), H5Dclose);

@@ -12,7 +12,8 @@
 namespace scree {
 namespace {
 
-constexpr double kFarthest = 1e6;  // m
+constexpr double kFarthest = 1e6;                             // m
+constexpr double kLeastDiameter = 1e-7, kMostDiameter = 1e3;  // m
 
 double mass_of(const Grain& grain, double density) {
   return density * std::numbers::pi / 6 * grain.diameter * grain.diameter * grain.diameter;
@@ -135,6 +136,9 @@ SnapshotRead read_snapshot(const std::filesystem::path& file, const SnapshotOpti
     if (use_mass && !(grain.mass > 0 && std::isfinite(grain.mass)))
       fail(fmt::format("mass {:g} must be above 0", grain.mass));
     grain.diameter *= unit;
+    if (grain.diameter < kLeastDiameter || grain.diameter > kMostDiameter)
+      fail(fmt::format("diameter {:g} m; allowed {:g} to {:g} m; is the unit of length right?",
+                       grain.diameter, kLeastDiameter, kMostDiameter));
     grain.position = turned(unit * grain.position, options.up) + options.shift;
     grain.velocity = turned(unit * grain.velocity, options.up);
     if (grain.position.cwiseAbs().maxCoeff() > kFarthest)

@@ -24,8 +24,7 @@ std::vector<std::string> split(std::string_view line) {
 }  // namespace
 
 CsvTable::CsvTable(const std::filesystem::path& file, std::vector<std::string> columns)
-    : file_(file), stream_(file), columns_(std::move(columns)) {
-  if (!stream_) throw std::runtime_error(fmt::format("{}: cannot be opened", file.string()));
+    : file_(file), text_(read_input_text(file)), columns_(std::move(columns)) {
   std::string header;
   const std::string expected = fmt::format("{}", fmt::join(columns_, ","));
   if (!next_line(header)) {
@@ -36,7 +35,10 @@ CsvTable::CsvTable(const std::filesystem::path& file, std::vector<std::string> c
 }
 
 bool CsvTable::next_line(std::string& line) {
-  while (std::getline(stream_, line)) {
+  while (at_ < text_.size()) {
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    line.assign(text_, at_, end - at_);
+    at_ = end + 1;
     ++line_number_;
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (!line.empty() && line.front() != '#') return true;
@@ -89,7 +91,7 @@ double CsvTable::number(const std::string& column) const {
 }
 
 void CsvTable::fail(const std::string& what) const {
-  throw std::runtime_error(fmt::format("{}:{}: {}", file_.string(), line_number_, what));
+  throw FileError(file_, line_number_, what);
 }
 
 }  // namespace scree

@@ -1,18 +1,19 @@
 #pragma once
 // A table of reference data: commas, a header that is known beforehand, no quoting.
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "sim/material/input_bytes.h"
+
 namespace scree {
 
 /// Reads a CSV file row by row. Lines that are empty or begin with # are passed over. All errors are
-/// std::runtime_error `file:line: what is wrong`.
+/// FileError.
 class CsvTable {
  public:
-  /// Throws if the file cannot be opened or its header is not `columns`.
+  /// Throws if the file cannot be read, is no text or its header is not `columns`.
   CsvTable(const std::filesystem::path& file, std::vector<std::string> columns);
 
   bool next();  ///< goes to the next row; false after the last
@@ -27,7 +28,8 @@ class CsvTable {
   bool next_line(std::string& line);
   const std::string& field(const std::string& column) const;
   std::filesystem::path file_;
-  std::ifstream stream_;
+  std::string text_;
+  std::size_t at_ = 0;
   int line_number_ = 0;
   std::vector<std::string> columns_, fields_;
 };

@@ -5,14 +5,19 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
+#include "sim/material/input_bytes.h"
+
 namespace scree {
 
 namespace {
+
+constexpr std::uintmax_t kMostFileBytes = 1'000'000;
+constexpr std::size_t kMostPoints = 10'000;             // a measured curve has some twenty
+constexpr double kLeastMm = 1e-3, kMostMm = 1'000'000;  // dust; more than any block
 
 /// Passing at `diameter` between two points of a curve linear in log d.
 double passing_between(const Grading::Point& a, const Grading::Point& b, double diameter) {
@@ -120,19 +125,17 @@ Grading Grading::with_fines(double share, double ratio) const {
 }
 
 Grading read_grading(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw std::runtime_error(fmt::format("{}: cannot be opened", file.string()));
+  const std::string bytes = read_input_text(file, kMostFileBytes);
   const std::string header = "diameter_mm,passing_pct";
   std::vector<Grading::Point> points;
-  std::string line;
   int number = 0;
   bool header_seen = false;
-  const auto fail = [&](const std::string& what) {
-    throw std::runtime_error(fmt::format("{}:{}: {}", file.string(), number, what));
-  };
-  while (std::getline(stream, line)) {
+  const auto fail = [&](const std::string& what) { throw FileError(file, number, what); };
+  for (std::size_t at = 0; at < bytes.size();) {
+    const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
+    const std::string_view text = trimmed(std::string_view(bytes).substr(at, end - at));
+    at = end + 1;
     ++number;
-    const std::string_view text = trimmed(line);
     if (text.empty() || text.front() == '#') continue;
     if (!header_seen) {
       if (text != header) fail(fmt::format("the first line that is no comment must be '{}'", header));
@@ -143,8 +146,11 @@ Grading read_grading(const std::filesystem::path& file) {
     double diameter_mm = 0, passing_pct = 0;
     if (comma == std::string_view::npos || !parse_number(text.substr(0, comma), diameter_mm) ||
         !parse_number(text.substr(comma + 1), passing_pct))
-      fail(fmt::format("'{}' is not two numbers 'diameter_mm,passing_pct'", text));
+      fail(fmt::format("'{:.60}' is not two numbers 'diameter_mm,passing_pct'", text));
     if (diameter_mm <= 0) fail(fmt::format("diameter {} mm must be above 0", diameter_mm));
+    if (diameter_mm < kLeastMm || diameter_mm > kMostMm)
+      fail(fmt::format("diameter {} mm; allowed {} to {} mm", diameter_mm, kLeastMm, kMostMm));
+    if (points.size() == kMostPoints) fail(fmt::format("more than {} points", kMostPoints));
     if (passing_pct < 0 || passing_pct > 100)
       fail(fmt::format("passing {} % must be between 0 and 100", passing_pct));
     if (points.empty() && passing_pct != 0)

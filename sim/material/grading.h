@@ -44,8 +44,8 @@ class Grading {
 };
 
 /// Reads a grading file: CSV, `#` comment lines (source, how it was rebuilt), header
-/// `diameter_mm,passing_pct`. Throws std::runtime_error with one line `file:line: what is wrong, what is
-/// allowed`.
+/// `diameter_mm,passing_pct`, at most 10,000 points between 1 micrometre and 1 km. Throws FileError: what is
+/// wrong, what is allowed.
 Grading read_grading(const std::filesystem::path& file);
 
 /// Diameters (m), largest first, of spheres that together weigh `mass` (kg) within 0.5 % and whose passing

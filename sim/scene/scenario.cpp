@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sim/material/input_bytes.h"
 #include "sim/scene/scenario_read.h"
 
 namespace scree {
@@ -121,8 +122,9 @@ void put_in_order(std::vector<ScenarioError>& errors, const std::vector<std::str
 }  // namespace
 
 std::string ScenarioError::text() const {
-  if (column > 0) return fmt::format("{}:{}:{}: {}", file, line, column, message);
-  return line > 0 ? fmt::format("{}:{}: {}", file, line, message) : fmt::format("{}: {}", file, message);
+  if (column > 0) return one_line(fmt::format("{}:{}:{}: {}", file, line, column, message));
+  return one_line(line > 0 ? fmt::format("{}:{}: {}", file, line, message)
+                           : fmt::format("{}: {}", file, message));
 }
 
 ScenarioResult load_scenario(const fs::path& file, const std::vector<std::string>& overrides,

@@ -212,7 +212,7 @@ struct ScenarioError {
   std::string file;
   int line = 0, column = 0;  ///< from 1; 0 for `--set`, and column for a row of a table
   std::string message;       ///< what is wrong, what is allowed
-  std::string text() const;  ///< file:line:column: message
+  std::string text() const;  ///< file:line:column: message, in one line
 };
 
 /// A scenario, or everything that is wrong with it.

@@ -24,6 +24,9 @@ constexpr double kDensestFill = 0.62;
 /// Width and height of a blade below which it is none, m.
 constexpr double kLeastBlade = 1e-3;
 
+/// Time between frames of a trajectory below which it fills any disk, s.
+constexpr double kLeastFrameInterval = 1e-3;
+
 class Checks {
  public:
   Checks(const Scenario& scenario, const fs::path& asset_dir, ReadNotes& notes,
@@ -42,6 +45,12 @@ class Checks {
     if (notes_.good({&s_.stop.min_time, &s_.stop.max_time}) && s_.stop.min_time > s_.stop.max_time)
       fail(&s_.stop.min_time, fmt::format("stop.min_time_s: {} is more than stop.max_time_s ({})",
                                           s_.stop.min_time, s_.stop.max_time));
+    const double& interval = s_.output.frame_interval;
+    if (notes_.good({&interval}) && interval > 0 && interval < kLeastFrameInterval)
+      fail(&interval,
+           fmt::format("output.frame_interval_s: {} is out of range; allowed {} s and more, or 0 for the "
+                       "last frame alone",
+                       interval, kLeastFrameInterval));
     sections();
     compare();
   }
@@ -83,6 +92,15 @@ class Checks {
                "{}: about {:.1f} million spheres ({} of {}), more than the {:.0f} million allowed; {}, or "
                "take a grading without its finest part",
                path, count / 1e6, load, grading_->name(), kMaxSpheres / 1e6, cure));
+  }
+
+  /// A load must have a sphere.
+  void smallest(double mass, const void* key, std::string_view path) {
+    if (!grading_ || !notes_.good({key, &s_.material.density})) return;
+    const double least = s_.material.density * std::numbers::pi / 6 * std::pow(grading_->min_diameter(), 3);
+    if (mass < least)
+      fail(key, fmt::format("{}: {:g} kg are less than the smallest sphere of {} ({:g} m, {:g} kg)", path,
+                            mass, grading_->name(), grading_->min_diameter(), least));
   }
 
   void effects() {
@@ -231,6 +249,7 @@ class Checks {
   /// What holds for all experiments that bring loads over a crest; `what` holds a load.
   template <class Experiment>
   void bench_loads(const Experiment& e, const Vec3& box, const std::string& path, std::string_view what) {
+    smallest(e.payload, &e.payload, "experiment.payload_t");
     if (notes_.good({&e.payload, &e.dumps}))
       spheres(e.payload * e.dumps, &e.payload, "experiment.payload_t",
               fmt::format("{} dumps of {} t", e.dumps, e.payload / 1000), "lower payload_t or dumps");
@@ -261,6 +280,7 @@ class Checks {
 
   void repose_lift(const ReposeLift& r) {
     if (!notes_.good({&r.mass})) return;
+    smallest(r.mass, &r.mass, "experiment.mass_kg");
     spheres(r.mass, &r.mass, "experiment.mass_kg", fmt::format("{} kg", r.mass), "lower mass_kg");
     if (!notes_.good({&r.diameter, &r.height})) return;
     largest(r.diameter, &r.diameter, "experiment.container.diameter_m");
@@ -269,6 +289,7 @@ class Checks {
 
   void bucket_dump(const BucketDump& b) {
     if (!notes_.good({&b.mass, &b.buckets})) return;
+    smallest(b.mass, &b.mass, "experiment.mass_kg");
     spheres(b.mass * b.buckets, &b.mass, "experiment.mass_kg",
             fmt::format("{} buckets of {} kg", b.buckets, b.mass), "lower mass_kg or buckets");
     if (!notes_.good({&b.diameter, &b.height})) return;

@@ -152,7 +152,8 @@ class Reader {
 
   void missing(const void* address, const Place& place, const std::string& path, std::string_view doc) {
     if (address != nullptr) notes_.bad.insert(address);
-    if (!incomplete_)
+    const auto around = [&](const std::string& map) { return path.starts_with(map); };
+    if (!incomplete_ && std::none_of(no_maps_.begin(), no_maps_.end(), around))
       report(notes_.errors, place, fmt::format("'{}' is missing: {}", path, doc.substr(0, doc.size() - 1)));
   }
 
@@ -164,6 +165,7 @@ class Reader {
     empty.place = around;
     if (entry == nullptr) return empty;
     empty.place = entry->value.place;
+    no_maps_.push_back(path + ".");
     if (entry->value.kind == YamlKind::null)
       fail(entry->key_place, nullptr, path, "empty; write its keys or leave it out");
     else
@@ -414,6 +416,7 @@ class Reader {
 
   const fs::path& asset_dir_;
   bool incomplete_;
+  std::vector<std::string> no_maps_;  // paths, with a point, of groups that are something else
   ReadNotes& notes_;
 };
 

@@ -9,6 +9,8 @@
 #include <sstream>
 #include <unordered_map>
 
+#include "sim/material/input_bytes.h"
+
 namespace scree {
 namespace {
 
@@ -227,6 +229,16 @@ std::optional<YamlNode> read_yaml(const std::filesystem::path& file, std::vector
   text.resize(static_cast<std::size_t>(stream.gcount()));
   if (text.size() > kMaxFileBytes) {
     report(errors, whole, "larger than 1 MB; this is no scenario");
+    return std::nullopt;
+  }
+  try {
+    require_text(file, text);
+  } catch (const FileError& error) {
+    report(errors, whole, error.message);
+    return std::nullopt;
+  }
+  if (const int line = line_that_is_not_utf8(text)) {
+    report(errors, {origin.file, line, 1}, "is not UTF-8; save the file as UTF-8");
     return std::nullopt;
   }
   auto root = parse_yaml(text, origin, errors);

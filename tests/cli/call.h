@@ -8,19 +8,31 @@
 #include <sstream>
 #include <string>
 
+#include "scree_version.h"
+
 struct Called {
   int code;
   std::string text;  // stdout and stderr
 };
 
-inline Called call(const std::string& arguments) {
-  const std::string command = std::string(SCREE_BINARY) + " " + arguments + " 2>&1 </dev/null";
-  FILE* pipe = popen(command.c_str(), "r");
+inline Called called(const std::string& command) {
+  FILE* pipe = popen((command + " 2>&1 </dev/null").c_str(), "r");
   Called result{-1, ""};
   char buffer[4096];
   while (const std::size_t n = fread(buffer, 1, sizeof buffer, pipe)) result.text.append(buffer, n);
-  result.code = WEXITSTATUS(pclose(pipe));
+  const int status = pclose(pipe);
+  result.code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   return result;
+}
+
+inline Called call(const std::string& arguments) {
+  return called(std::string(SCREE_BINARY) + " " + arguments);
+}
+
+/// In a folder, ended after some seconds (exit code 124). $SOURCE is the source tree.
+inline Called call_in(const std::filesystem::path& folder, const std::string& arguments, int seconds) {
+  return called("SOURCE=" SCREE_SOURCE_DIR "; cd " + folder.string() + " && timeout " +
+                std::to_string(seconds) + " " SCREE_BINARY " " + arguments);
 }
 
 inline std::string slurp(const std::filesystem::path& file) {

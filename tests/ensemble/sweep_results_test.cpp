@@ -125,7 +125,7 @@ TEST_F(SweepTable, SaysWhatIsWrong) {
   EXPECT_THAT(reading(""), ThrowsMessage<std::runtime_error>(HasSubstr("the file is empty")));
   fs::remove(file);
   EXPECT_THAT([this] { read_sweep_csv(sweep, file); },
-              ThrowsMessage<std::runtime_error>(HasSubstr("cannot be opened")));
+              ThrowsMessage<std::runtime_error>(HasSubstr("there is no such file")));
 }
 
 TEST_F(SweepTable, DifferencesFromPrintedValues) {
