@@ -1,0 +1,117 @@
+#include "analysis/image/grain_split.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+namespace scree {
+namespace {
+
+// Heights are sorted in steps of an eighth of a pixel: finer than the distance transform of a jagged outline.
+constexpr int kSteps = 8;
+
+// Floods with their summits; a flood that was joined to another points to it.
+class Floods {
+ public:
+  int begin(int summit) {
+    parent_.push_back(static_cast<int>(parent_.size()));
+    summit_.push_back(summit);
+    return parent_.back();
+  }
+  int root(int flood) {
+    while (parent_[flood] != flood) flood = parent_[flood] = parent_[parent_[flood]];
+    return flood;
+  }
+  int summit(int root) const { return summit_[root]; }
+  // The earlier one, which is the higher one, goes on.
+  void join(int a, int b) { parent_[std::max(a, b)] = std::min(a, b); }
+  std::size_t size() const { return parent_.size(); }
+
+ private:
+  std::vector<int> parent_, summit_;
+};
+
+// Pixels of a height above 0, the highest first, in rows within a height: a counting sort.
+std::vector<int> from_the_top(const cv::Mat1i& height) {
+  double highest = 0;
+  cv::minMaxLoc(height, nullptr, &highest);
+  std::vector<int> begin(static_cast<std::size_t>(highest) + 2, 0);
+  const int* h = height[0];
+  const int n = height.rows * height.cols;
+  const auto top = static_cast<int>(highest);
+  for (int i = 0; i < n; ++i)
+    if (h[i] > 0) ++begin[top - h[i] + 1];
+  for (std::size_t k = 1; k < begin.size(); ++k) begin[k] += begin[k - 1];
+  std::vector<int> order(begin.back());
+  for (int i = 0; i < n; ++i)
+    if (h[i] > 0) order[begin[top - h[i]]++] = i;
+  return order;
+}
+
+// Pixels of rock without a label take that of a neighbour, ring after ring, `rings` times.
+void grow(cv::Mat1i& labels, const cv::Mat1b& rock, int rings) {
+  for (int ring = 0; ring < rings; ++ring) {
+    const cv::Mat1i before = labels.clone();
+    for (int y = 1; y + 1 < labels.rows; ++y)
+      for (int x = 1; x + 1 < labels.cols; ++x) {
+        if (before(y, x) != 0 || rock(y, x) == 0) continue;
+        for (const int near : {before(y - 1, x), before(y, x - 1), before(y, x + 1), before(y + 1, x)})
+          if (near != 0) labels(y, x) = near;
+      }
+  }
+}
+
+}  // namespace
+
+Labels split_grains(const cv::Mat1b& rock, const cv::Mat1b& edges, double neck) {
+  cv::Mat1b open = rock.clone();
+  if (!edges.empty()) open.setTo(0, edges);
+  // A frame of gap, so that no neighbour lies outside.
+  cv::Mat1b framed;
+  cv::copyMakeBorder(open, framed, 1, 1, 1, 1, cv::BORDER_CONSTANT, 0);
+  cv::Mat1f distance;
+  cv::distanceTransform(framed, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  cv::Mat1i height(distance.size());
+  for (int y = 0; y < height.rows; ++y)
+    for (int x = 0; x < height.cols; ++x) height(y, x) = static_cast<int>(std::lround(distance(y, x) * kSteps));
+
+  const int row = height.cols;
+  const int around[8] = {-row - 1, -row, -row + 1, -1, 1, row - 1, row, row + 1};
+  cv::Mat1i flood(height.size(), -1);
+  int* of = flood[0];
+  const int* h = height[0];
+  Floods floods;
+  for (const int pixel : from_the_top(height)) {
+    int mine = -1;
+    for (const int step : around) {
+      if (of[pixel + step] < 0) continue;
+      const int other = floods.root(of[pixel + step]);
+      if (mine < 0 || mine == other) {
+        mine = other;
+        continue;
+      }
+      const int lower = std::min(floods.summit(mine), floods.summit(other));
+      if (h[pixel] >= neck * lower) floods.join(mine, other);
+      // The pixel on a border goes to the flood with the higher summit.
+      mine = floods.root(std::min(mine, other));
+    }
+    of[pixel] = mine < 0 ? floods.begin(h[pixel]) : mine;
+  }
+
+  Labels labels;
+  std::vector<int> name(floods.size(), 0);
+  labels.of = cv::Mat1i(rock.size(), 0);
+  for (int y = 0; y < rock.rows; ++y)
+    for (int x = 0; x < rock.cols; ++x) {
+      if (flood(y + 1, x + 1) < 0) continue;
+      int& label = name[floods.root(flood(y + 1, x + 1))];
+      if (label == 0) label = ++labels.count;
+      labels.of(y, x) = label;
+    }
+  // An edge is two pixels wide at most.
+  if (!edges.empty()) grow(labels.of, rock, 2);
+  return labels;
+}
+
+}  // namespace scree
