@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -62,6 +63,51 @@ void grow(cv::Mat1i& labels, const cv::Mat1b& rock, int rings) {
   }
 }
 
+// Label of the grain nearest to each pixel that is none, and how far it is.
+struct Nearest {
+  cv::Mat1f distance;
+  cv::Mat1i label;
+};
+
+Nearest nearest_grains(const cv::Mat1i& labels) {
+  Nearest nearest;
+  cv::Mat1i index;
+  cv::distanceTransform(labels == 0, nearest.distance, index, cv::DIST_L2, cv::DIST_MASK_5, cv::DIST_LABEL_PIXEL);
+  std::vector<int> label_of;
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x)
+      if (labels(y, x) > 0) {
+        label_of.resize(std::max<std::size_t>(label_of.size(), index(y, x) + 1));
+        label_of[index(y, x)] = labels(y, x);
+      }
+  nearest.label = cv::Mat1i(labels.size(), 0);
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x)
+      if (index(y, x) < static_cast<int>(label_of.size())) nearest.label(y, x) = label_of[index(y, x)];
+  return nearest;
+}
+
+// Pixels of the lines that OpenCV draws between its basins, and of the frame, go to the neighbour that is as
+// bright as they are.
+void close_lines(cv::Mat1i& basins, const cv::Mat1b& grey) {
+  const cv::Mat1i before = basins.clone();
+  for (int y = 0; y < basins.rows; ++y)
+    for (int x = 0; x < basins.cols; ++x) {
+      if (before(y, x) > 0) continue;
+      int best = 256;
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          const int ny = y + dy, nx = x + dx;
+          if (ny < 0 || nx < 0 || ny >= basins.rows || nx >= basins.cols || before(ny, nx) <= 0) continue;
+          const int apart = std::abs(grey(ny, nx) - grey(y, x));
+          if (apart < best) {
+            best = apart;
+            basins(y, x) = before(ny, nx);
+          }
+        }
+    }
+}
+
 }  // namespace
 
 Labels split_grains(const cv::Mat1b& rock, const cv::Mat1b& edges, double neck) {
@@ -112,6 +158,45 @@ Labels split_grains(const cv::Mat1b& rock, const cv::Mat1b& edges, double neck) 
   // An edge is two pixels wide at most.
   if (!edges.empty()) grow(labels.of, rock, 2);
   return labels;
+}
+
+Labels settle_borders(const Labels& labels, const cv::Mat1b& grey, const cv::Mat1b& ignore, double reach) {
+  std::vector<double> radius(labels.count + 1, 0);
+  for (int y = 0; y < labels.of.rows; ++y)
+    for (int x = 0; x < labels.of.cols; ++x) ++radius[labels.of(y, x)];
+  for (double& r : radius) r = std::sqrt(r / std::numbers::pi);
+
+  // Basin 1 is what is no grain, label + 1 the inside of a grain; 0 is open.
+  const Nearest nearest = nearest_grains(labels.of);
+  cv::Mat1i basins(labels.of.size(), 0);
+  for (int y = 0; y < basins.rows; ++y)
+    for (int x = 0; x < basins.cols; ++x) {
+      const int label = labels.of(y, x);
+      if (label == 0) {
+        const bool far = nearest.distance(y, x) > 1.5 + reach * radius[nearest.label(y, x)];
+        if (far || ignore(y, x)) basins(y, x) = 1;
+        continue;
+      }
+      bool inside = true;
+      for (int dy = -1; dy <= 1 && inside; ++dy)
+        for (int dx = -1; dx <= 1 && inside; ++dx) {
+          const int ny = y + dy, nx = x + dx;
+          inside = ny < 0 || nx < 0 || ny >= basins.rows || nx >= basins.cols || labels.of(ny, nx) == label;
+        }
+      // The smallest grains are hardly more than their rims.
+      if (inside || radius[label] < 3) basins(y, x) = label + 1;
+    }
+  // Steps stay, noise within a grain does not: it would let any basin through.
+  cv::Mat1b smooth;
+  cv::bilateralFilter(grey, smooth, 7, 25, 3);
+  cv::Mat3b colours;
+  cv::cvtColor(smooth, colours, cv::COLOR_GRAY2BGR);
+  cv::watershed(colours, basins);
+  close_lines(basins, grey);
+  Labels out{cv::Mat1i(labels.of.size(), 0), labels.count};
+  for (int y = 0; y < basins.rows; ++y)
+    for (int x = 0; x < basins.cols; ++x) out.of(y, x) = std::max(basins(y, x) - 1, 0);
+  return out;
 }
 
 }  // namespace scree

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 
 #include "analysis/results.h"
 
@@ -133,7 +134,7 @@ ImageBias measure_bias(const std::vector<CheckedPhoto>& photos, SizeModel model)
 
 TruthCheck check_against_truth(const PhotoAnalysis& found, const PhotoTruth& truth,
                                const PhotoAnalysisSettings& settings) {
-  std::vector<double> diameters, masses;
+  std::vector<double> diameters, masses, ideal_diameters, ideal_masses;
   std::vector<int> section;
   for (const VisibleGrain& grain : truth.grains) {
     if (grain.visible_area < settings.detection_area) continue;
@@ -141,10 +142,16 @@ TruthCheck check_against_truth(const PhotoAnalysis& found, const PhotoTruth& tru
     if (in < 0) continue;
     diameters.push_back(grain.diameter);
     masses.push_back(grain.mass);
+    // As size_of, without the factors that are the same for all.
+    const bool sphere = settings.model == SizeModel::sphere;
+    const double b = sphere ? std::sqrt(grain.visible_area) : grain.visible_b;
+    ideal_diameters.push_back(sphere ? b * std::sqrt(4 / std::numbers::pi) : b);
+    ideal_masses.push_back((sphere ? b : grain.visible_a) * b * b);
     section.push_back(in);
   }
   return {gradings_of(diameters, masses, section, settings.sections),
-          gradings_of(found.grains, settings.sections, settings.model), truth.scene_d50};
+          gradings_of(found.grains, settings.sections, settings.model),
+          gradings_of(ideal_diameters, ideal_masses, section, settings.sections), truth.scene_d50};
 }
 
 }  // namespace scree

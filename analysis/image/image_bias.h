@@ -34,6 +34,9 @@ struct ImageBias {
 /// seen, by their true diameters and masses.
 struct TruthCheck {
   std::vector<ImageGrading> known, measured;  ///< whole, then sections
+  /// Of perfect outlines of what can be seen, by the size model (ellipses for Feret's). What remains against `known` is
+  /// rock that lies on rock, which no analysis of a picture can tell.
+  std::vector<ImageGrading> ideal;
   double scene_d50 = 0;                       ///< m, of all grains, hidden ones too
 };
 

@@ -87,10 +87,12 @@ PhotoAnalysis analyse_photo(const cv::Mat3b& picture, const PhotoAnalysisSetting
   ForegroundSettings foreground;
   foreground.threshold = settings.threshold;
   foreground.edges = settings.edges;
+  foreground.local_window_px = settings.local_window_px;
   foreground.largest_hole_px = settings.detection_area / (middle * middle);
   const Foreground found = find_rock(picture, ignore, foreground);
   out.rock_share = static_cast<double>(cv::countNonZero(found.rock)) / std::max(1, cv::countNonZero(region));
   out.labels = split_grains(found.rock, found.edges, settings.neck);
+  if (settings.border_reach > 0) out.labels = settle_borders(out.labels, found.grey, ignore, settings.border_reach);
 
   const std::vector<cv::Rect> boxes = boxes_of(out.labels);
   for (int label = 1; label <= out.labels.count; ++label) {

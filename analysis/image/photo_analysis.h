@@ -25,6 +25,8 @@ struct PhotoAnalysisSettings {
   double neck = 0.75;               ///< see split_grains
   Threshold threshold = Threshold::otsu;
   bool edges = true;
+  int local_window_px = 101;    ///< see ForegroundSettings
+  double border_reach = 0.6;    ///< see settle_borders; 0: borders stay where the threshold puts them
 };
 
 /// One grain of a picture.

@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kColumns[] = {"id",      "x_px",        "y_px",         "diameter_m",
-                                    "mass_kg", "visible_cm2", "visible_share"};
+                                    "mass_kg", "visible_cm2", "visible_share", "visible_a_m", "visible_b_m"};
 
 // The number behind "# name = " in a comment line.
 double stated(const fs::path& file, const std::string& bytes, const std::string& name) {
@@ -33,8 +33,8 @@ std::string truth_csv(const PhotoTruth& truth) {
       "# m_per_px = {:.9g}\n# scene_d50_m = {:.9g}\n{}\n",
       truth.m_per_px, truth.scene_d50, fmt::join(kColumns, ","));
   for (const VisibleGrain& grain : truth.grains)
-    text += fmt::format("{},{:.2f},{:.2f},{:.6g},{:.6g},{:.6g},{:.4f}\n", grain.id, grain.x, grain.y,
-                        grain.diameter, grain.mass, 1e4 * grain.visible_area, grain.visible_share);
+    text += fmt::format("{},{:.2f},{:.2f},{:.6g},{:.6g},{:.6g},{:.4f},{:.6g},{:.6g}\n", grain.id, grain.x, grain.y,
+                        grain.diameter, grain.mass, 1e4 * grain.visible_area, grain.visible_share, grain.visible_a, grain.visible_b);
   return text;
 }
 
@@ -59,9 +59,10 @@ PhotoTruth read_truth(const fs::path& file) {
       if (!number || *number < 0) table.fail(fmt::format("`{}` must be a number, not below 0", kColumns[i]));
       value[i] = *number;
     }
-    if (!(value[3] > 0 && value[4] > 0)) table.fail("`diameter_m` and `mass_kg` must be above 0");
+    for (const int i : {3, 4, 7, 8})
+      if (!(value[i] > 0)) table.fail(fmt::format("`{}` must be above 0", kColumns[i]));
     truth.grains.push_back({static_cast<std::int64_t>(value[0]), value[1], value[2], value[3], value[4],
-                            1e-4 * value[5], value[6]});
+                            1e-4 * value[5], value[6], value[7], value[8]});
   }
   if (truth.grains.empty()) throw FileError(file, 0, "has no grains");
   return truth;

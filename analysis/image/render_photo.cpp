@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "analysis/image/grain_shape.h"
 #include "analysis/image/picture_file.h"
 #include "analysis/segregation.h"
 #include "sim/material/random.h"
@@ -181,18 +182,10 @@ cv::Mat expose(const cv::Mat3f& light, const PhotoSettings& settings) {
 }
 
 PhotoTruth truth_of(const Buffers& buffers, const RockScene& scene, double m_per_px) {
-  struct Seen {
-    double x = 0, y = 0;
-    std::int64_t pixels = 0;
-  };
-  std::vector<Seen> seen(scene.grains.size());
+  std::vector<cv::Rect> seen(scene.grains.size());
   for (int y = 0; y < buffers.owner.rows; ++y)
     for (int x = 0; x < buffers.owner.cols; ++x)
-      if (const int owner = buffers.owner(y, x); owner >= 0) {
-        seen[owner].x += x;
-        seen[owner].y += y;
-        ++seen[owner].pixels;
-      }
+      if (const int owner = buffers.owner(y, x); owner >= 0) seen[owner] |= cv::Rect(x, y, 1, 1);
   PhotoTruth truth;
   truth.m_per_px = m_per_px;
   std::vector<double> diameters, masses;
@@ -200,12 +193,12 @@ PhotoTruth truth_of(const Buffers& buffers, const RockScene& scene, double m_per
     const Grain& grain = scene.grains[i];
     diameters.push_back(grain.diameter);
     masses.push_back(grain.mass);
-    if (seen[i].pixels == 0) continue;
-    const auto n = static_cast<double>(seen[i].pixels);
-    const double area = n * m_per_px * m_per_px;
+    if (seen[i].empty()) continue;
+    const GrainShape shape = shape_of(buffers.owner(seen[i]) == static_cast<int>(i));
+    const double area = shape.area * m_per_px * m_per_px;
     const double outline = std::numbers::pi / 4 * grain.diameter * grain.diameter;
-    truth.grains.push_back({grain.id, seen[i].x / n, seen[i].y / n, grain.diameter, grain.mass, area,
-                            std::min(area / outline, 1.0)});
+    truth.grains.push_back({grain.id, seen[i].x + shape.x, seen[i].y + shape.y, grain.diameter, grain.mass, area,
+                            std::min(area / outline, 1.0), shape.major * m_per_px, shape.minor * m_per_px});
   }
   if (!diameters.empty()) truth.scene_d50 = PassingCurve(diameters, masses).diameter(0.5);
   return truth;

@@ -33,6 +33,7 @@ struct VisibleGrain {
   double mass = 0;                ///< kg
   double visible_area = 0;        ///< m2
   double visible_share = 0;       ///< of its outline
+  double visible_a = 0, visible_b = 0;  ///< axes of the ellipse fitted to what is seen of it (GrainShape), m
 };
 
 /// What a virtual photograph shows.
@@ -52,8 +53,8 @@ struct Photo {
 /// for more pixels than kLargestPicture (picture_file.h), or none.
 Photo render_photo(const RockScene& scene, const PhotoSettings& settings);
 
-/// The truth as CSV: `id,x_px,y_px,diameter_m,mass_kg,visible_cm2,visible_share`, and in comment lines
-/// `# m_per_px = ...`, `# scene_d50_m = ...`.
+/// The truth as CSV: `id,x_px,y_px,diameter_m,mass_kg,visible_cm2,visible_share,visible_a_m,visible_b_m`, and in
+/// comment lines `# m_per_px = ...`, `# scene_d50_m = ...`.
 std::string truth_csv(const PhotoTruth& truth);
 /// Reads it. Throws FileError.
 PhotoTruth read_truth(const std::filesystem::path& file);

@@ -59,9 +59,9 @@ class LaidGrains {
   std::vector<std::vector<Grain>> cells_;
 };
 
-class Layer {
+class Layout {
  public:
-  Layer(const SceneSettings& settings, double largest)
+  Layout(const SceneSettings& settings, double largest)
       : settings_(settings), random_(settings.seed, 2, RandomPurpose::picture),
         laid_(settings.width, settings.height, largest) {}
 
@@ -148,9 +148,9 @@ RockScene make_scene(const Grading& grading, const SceneSettings& settings) {
       std::swap(diameters[i - 1], diameters[static_cast<std::size_t>(shuffle.uniform() * static_cast<double>(i))]);
   }
   RockScene scene{settings.width, settings.height, {}, {}};
-  Layer layer(settings, largest * 1.15 + 0.1);
+  Layout layout(settings, largest * 1.15 + 0.1);
   for (const double d : diameters) {
-    const auto at = layer.place(d, grading.passing(d), scene.grains);
+    const auto at = layout.place(d, grading.passing(d), scene.grains);
     if (!at)
       throw std::invalid_argument(fmt::format(
           "no room for a grain of {:.3g} m after {} of {} grains: take a coverage below {:.2g}", d,
@@ -160,7 +160,7 @@ RockScene make_scene(const Grading& grading, const SceneSettings& settings) {
     grain.position = *at;
     grain.diameter = d;
     grain.mass = settings.density * std::numbers::pi / 6 * d * d * d;
-    layer.add(grain);
+    layout.add(grain);
     scene.grains.push_back(grain);
   }
   return scene;
