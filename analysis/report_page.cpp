@@ -161,8 +161,8 @@ std::string figure(const Picture& picture) {
   return fmt::format(
       "<figure{}><img alt=\"{}\" src=\"data:image/{};base64,{}\"><figcaption><b>{}.</b> "
       "{}</figcaption></figure>\n",
-      svg ? " class=\"chart\"" : "", html_escaped(picture.title + ". " + picture.caption),
-      kind, base64(bytes), html_escaped(picture.title), html_escaped(picture.caption));
+      svg ? " class=\"chart\"" : "", html_escaped(picture.title + ". " + picture.caption), kind,
+      base64(bytes), html_escaped(picture.title), html_escaped(picture.caption));
 }
 
 std::string figures(const char* heading, const std::vector<Picture>& pictures) {

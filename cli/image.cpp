@@ -66,7 +66,8 @@ scree::PhotoAnalysis analyse(const fs::path& file, const cv::Mat3b& picture,
 double shape_factor_from(const fs::path& table_file, scree::PhotoAnalysisSettings settings) {
   scree::DelimitedTable table(table_file);
   const auto photo = table.column("photo"), mass = table.column("mass_kg");
-  if (!photo || !mass) throw scree::FileError(table_file, table.header_line(), "needs the columns `photo,mass_kg`");
+  if (!photo || !mass)
+    throw scree::FileError(table_file, table.header_line(), "needs the columns `photo,mass_kg`");
   settings.shape_factor = 1;
   settings.sections = 1;
   if (settings.model == scree::SizeModel::sphere) settings.model = scree::SizeModel::ellipsoid;
@@ -76,8 +77,8 @@ double shape_factor_from(const fs::path& table_file, scree::PhotoAnalysisSetting
     if (!weighed || !(*weighed > 0)) table.fail("`mass_kg` must be a number above 0");
     const fs::path file = table_file.parent_path() / table.field(*photo);
     const scree::PhotoAnalysis found = analyse(file, scree::read_photograph(file), settings);
-    fractions.push_back({table.field(*photo), *weighed,
-                         scree::gradings_of(found.grains, 1, settings.model)[0].mass});
+    fractions.push_back(
+        {table.field(*photo), *weighed, scree::gradings_of(found.grains, 1, settings.model)[0].mass});
   }
   if (fractions.empty()) throw scree::FileError(table_file, 0, "has no rows");
   const scree::ShapeFactor factor = scree::calibrate_shape_factor(fractions);
@@ -95,13 +96,14 @@ void print_gradings(const scree::AnalysedPhoto& photo) {
   fmt::print("{}: {} grains, {:.4g} cm/px\n", photo.name, photo.found.grains.size(),
              100 * photo.found.scale.at(photo.found.region_box.y + photo.found.region_box.height / 2.0));
   for (const std::string& note : photo.found.notes) fmt::print("note: {}\n", note);
-  fmt::print("{:<8} {:>7} {:>8} {:>8} {:>8} {:>8} {:>6} {:>6} {:>7}\n", "section", "grains", "D10, cm", "D50, cm",
-             "D80, cm", "D95, cm", "Cu", "Cc", "chi");
+  fmt::print("{:<8} {:>7} {:>8} {:>8} {:>8} {:>8} {:>6} {:>6} {:>7}\n", "section", "grains", "D10, cm",
+             "D50, cm", "D80, cm", "D95, cm", "Cu", "Cc", "chi");
   for (const scree::ImageGrading& g : photo.gradings) {
     fmt::print("{:<8} {:>7}", g.name, g.grains);
     if (g.curve)
-      fmt::print(" {:>8.1f} {:>8.1f} {:>8.1f} {:>8.1f} {:>6.2f} {:>6.2f} {:>7}", 100 * g.d10, 100 * g.d50, 100 * g.d80,
-                 100 * g.d95, g.cu, g.cc, std::isfinite(g.chi) ? fmt::format("{:.2f}", g.chi) : "-");
+      fmt::print(" {:>8.1f} {:>8.1f} {:>8.1f} {:>8.1f} {:>6.2f} {:>6.2f} {:>7}", 100 * g.d10, 100 * g.d50,
+                 100 * g.d80, 100 * g.d95, g.cu, g.cc,
+                 std::isfinite(g.chi) ? fmt::format("{:.2f}", g.chi) : "-");
     fmt::print("\n");
   }
 }
@@ -114,18 +116,19 @@ void print_check(const scree::TruthCheck& check) {
                                    ? std::abs(check.measured[k].chi - check.known[k].chi)
                                    : INFINITY);
   fmt::print(
-      "known rock: D50 {:.1f} cm of what can be seen, measured {:+.1f} % off; {:.1f} cm of all rock, {:+.1f} % off; "
+      "known rock: D50 {:.1f} cm of what can be seen, measured {:+.1f} % off; {:.1f} cm of all rock, {:+.1f} "
+      "% off; "
       "largest error of chi {:.2f}\n",
       100 * check.known[0].d50, 100 * (check.measured[0].d50 / check.known[0].d50 - 1), 100 * check.scene_d50,
       100 * (check.measured[0].d50 / check.scene_d50 - 1), worst);
 }
 
 void print_bias(const scree::ImageBias& bias) {
-  fmt::print("bias against size: {} outlines, {} of them known grains\n{:>16} {:>8} {:>9} {:>6} {:>12}\n", bias.outlines,
-             bias.matched, "diameter, m", "visible", "detected", "ratio", "std ln ratio");
+  fmt::print("bias against size: {} outlines, {} of them known grains\n{:>16} {:>8} {:>9} {:>6} {:>12}\n",
+             bias.outlines, bias.matched, "diameter, m", "visible", "detected", "ratio", "std ln ratio");
   for (const scree::BiasClass& size : bias.classes)
-    fmt::print("{:>16} {:>8} {:>8.0f}% {:>6} {:>12}\n", fmt::format("{:.3f} - {:.3f}", size.low, size.high), size.visible,
-               100.0 * size.detected / size.visible, scree::decimals_text(size.ratio, 2),
+    fmt::print("{:>16} {:>8} {:>8.0f}% {:>6} {:>12}\n", fmt::format("{:.3f} - {:.3f}", size.low, size.high),
+               size.visible, 100.0 * size.detected / size.visible, scree::decimals_text(size.ratio, 2),
                scree::decimals_text(size.deviation, 2));
 }
 
@@ -136,11 +139,13 @@ std::string effects_yaml(const scree::ImageBias& bias, const fs::path& scenario,
   values.push_back(fmt::format("effects.detection_limit.ratio={:.4g}", ratio));
   if (ratio > 0) values.push_back(fmt::format("effects.detection_limit.steepness={:.4g}", bias.steepness));
   values.push_back(fmt::format("effects.image_blur.width={:.4g}", std::clamp(bias.width, 0.0, 2.0)));
-  values.push_back(fmt::format("effects.image_shape_bias.exponent={:.4g}", std::clamp(bias.exponent, -0.9, 2.0)));
+  values.push_back(
+      fmt::format("effects.image_shape_bias.exponent={:.4g}", std::clamp(bias.exponent, -0.9, 2.0)));
   const std::vector<std::string> comment{
       "Bias of image analysis, measured on virtual photographs (scree image --truth); see docs/image.md."};
   if (!scenario.empty()) return scree::scenario_patch(scenario, folder, values, comment);
-  return "# " + comment[0] + "\n# To be added to a scenario, or give --scenario.\n" + scree::nested_yaml(values);
+  return "# " + comment[0] + "\n# To be added to a scenario, or give --scenario.\n" +
+         scree::nested_yaml(values);
 }
 
 // Chi and D50 of every section, the pictures being repeats.
@@ -168,19 +173,21 @@ int write_dataset_of(const ImageOptions& options, const scree::Scenario& scenari
   draft.experiments.push_back(std::move(experiment));
   const std::vector<std::string> left_out = scree::write_dataset(draft, folder);
   if (!left_out.empty())
-    fmt::print("note: not in the dataset, as nothing is known of their scatter: {}\n", fmt::join(left_out, ", "));
+    fmt::print("note: not in the dataset, as nothing is known of their scatter: {}\n",
+               fmt::join(left_out, ", "));
   const scree::DatasetResult check = scree::load_dataset(folder / "dataset.yaml", asset_dir());
   for (const scree::ScenarioError& error : check.errors) fmt::print(stderr, "{}\n", error.text());
   if (!check.errors.empty()) return kBadInput;
-  fmt::print("dataset: {} ({} observables)\n", (folder / "dataset.yaml").string(), check.dataset.observables.size());
+  fmt::print("dataset: {} ({} observables)\n", (folder / "dataset.yaml").string(),
+             check.dataset.observables.size());
   return kOk;
 }
 
 // What can be said before any picture is looked at.
 bool may_begin(const ImageOptions& options, std::optional<scree::Scenario>& scenario) {
   if (!options.truth.empty() && options.truth.size() != options.photos.size()) {
-    fmt::print(stderr, "--truth: {} files for {} photographs; one each is needed, in their order\n", options.truth.size(),
-               options.photos.size());
+    fmt::print(stderr, "--truth: {} files for {} photographs; one each is needed, in their order\n",
+               options.truth.size(), options.photos.size());
     return false;
   }
   if (!options.scenario.empty()) {
@@ -209,7 +216,8 @@ int run_image(const ImageOptions& options) {
   std::vector<cv::Mat3b> overlays;
   std::set<std::string> names;
   try {
-    if (!options.weighed.empty()) report.settings.shape_factor = shape_factor_from(options.weighed, report.settings);
+    if (!options.weighed.empty())
+      report.settings.shape_factor = shape_factor_from(options.weighed, report.settings);
     for (const fs::path& file : options.truth) truths.push_back(scree::read_truth(file));
     for (const fs::path& file : options.photos) {
       std::string name = file.stem().string();
@@ -240,7 +248,8 @@ int run_image(const ImageOptions& options) {
     report.overlays.push_back(out / ("overlay_" + report.photos[i].name + ".jpg"));
     scree::write_picture(report.overlays.back(), overlays[i]);
   }
-  scree::write_text_file(out / "grains.csv", scree::grains_csv(report.photos, report.settings.model, report.settings.shape_factor));
+  scree::write_text_file(out / "grains.csv", scree::grains_csv(report.photos, report.settings.model,
+                                                               report.settings.shape_factor));
   scree::write_text_file(out / "gradings.csv", scree::gradings_csv(report.photos));
   scree::write_text_file(out / "models.csv", scree::models_csv(report.photos, options.sections));
   scree::write_text_file(out / "passing.csv", scree::passing_csv(report.photos));

@@ -304,65 +304,99 @@ int main(int argc, char** argv) {
   image_app->add_option("--sections", image.sections, "Equal parts of the slope, S1 at the top")
       ->check(CLI::Range(1, 50))
       ->capture_default_str();
-  image_app->add_option("--region", image.region,
-                        "The slope in pixels, \"x,y x,y x,y\", or two opposite corners; default: the whole picture");
+  image_app->add_option(
+      "--region", image.region,
+      "The slope in pixels, \"x,y x,y x,y\", or two opposite corners; default: the whole picture");
   image_app->add_option("--model", image.model, "How an outline becomes a body: sphere, ellipsoid or feret")
       ->check(CLI::IsMember({"sphere", "ellipsoid", "feret"}))
       ->capture_default_str();
-  auto* shape_factor = image_app->add_option("--shape-factor", image.shape_factor,
-                                             "lambda = c/b of ellipsoid and feret; default: 0.53")
+  auto* shape_factor = image_app
+                           ->add_option("--shape-factor", image.shape_factor,
+                                        "lambda = c/b of ellipsoid and feret; default: 0.53")
                            ->check(CLI::Range(0.05, 1.0));
-  image_app->add_option("--weighed", image.weighed, "Find lambda first, from photographs of weighed rock: CSV photo,mass_kg")
+  image_app
+      ->add_option("--weighed", image.weighed,
+                   "Find lambda first, from photographs of weighed rock: CSV photo,mass_kg")
       ->excludes(shape_factor);
-  image_app->add_option("--detection-limit", image.detection_limit_cm2, "Smallest outline that is counted, cm2")
+  image_app
+      ->add_option("--detection-limit", image.detection_limit_cm2, "Smallest outline that is counted, cm2")
       ->check(CLI::Range(1e-3, 1e6))
       ->capture_default_str();
-  image_app->add_option("--density", image.density, "Of the rock, kg/m3")->check(CLI::Range(500.0, 10000.0))->capture_default_str();
+  image_app->add_option("--density", image.density, "Of the rock, kg/m3")
+      ->check(CLI::Range(500.0, 10000.0))
+      ->capture_default_str();
   image_app->add_option("--threshold", image.threshold, "otsu, or local where the light is uneven")
       ->check(CLI::IsMember({"otsu", "local"}))
       ->capture_default_str();
-  image_app->add_option("--neck", image.neck,
-                        "Two parts are one grain if the neck between them is at least this share of the width of the smaller")
+  image_app
+      ->add_option("--neck", image.neck,
+                   "Two parts are one grain if the neck between them is at least this share of the width of "
+                   "the smaller")
       ->check(CLI::Range(0.05, 1.0))
       ->capture_default_str();
   image_app->add_flag("--no-edges", image.no_edges, "Steps of brightness within rock do not separate grains");
-  image_app->add_option("--truth", image.truth, "What scree render wrote about each photograph: errors, and the bias against size");
-  image_app->add_option("--scenario", image.scenario, "Scenario that simulates the slope: writes a dataset, and the bias on top of it");
-  image_app->add_option("--relative-uncertainty", image.relative_uncertainty,
-                        "Standard uncertainty in the dataset of values from one photograph, as a share of them")
+  image_app->add_option("--truth", image.truth,
+                        "What scree render wrote about each photograph: errors, and the bias against size");
+  image_app->add_option("--scenario", image.scenario,
+                        "Scenario that simulates the slope: writes a dataset, and the bias on top of it");
+  image_app
+      ->add_option("--relative-uncertainty", image.relative_uncertainty,
+                   "Standard uncertainty in the dataset of values from one photograph, as a share of them")
       ->check(CLI::PositiveNumber);
   image_app->add_option("--out", image.out, "Folder for the results; default: a free runs/image");
   image_app->add_flag("--force", image.force, "Write into --out even if it holds something");
   image_app->footer(
       "\nExamples:\n  scree image slope.jpg --scale 1.2cm/px --sections 6\n"
-      "  scree image slope1.jpg slope2.jpg --target-diameter 50cm --scenario scenarios/canadian_malartic_10m.yaml\n");
+      "  scree image slope1.jpg slope2.jpg --target-diameter 50cm --scenario "
+      "scenarios/canadian_malartic_10m.yaml\n");
 
   RenderOptions render;
   CLI::App* render_app =
       app.add_subcommand("render", "A virtual photograph of known rock, to test what `image` makes of it");
-  render_app->add_option("out", render.out, "Picture, .png or .jpg; its truth lies beside it, .truth.csv")->required();
+  render_app->add_option("out", render.out, "Picture, .png or .jpg; its truth lies beside it, .truth.csv")
+      ->required();
   render_app->add_option("--layout", render.layout, "How grains lie: apart, touching or overlapping")
       ->check(CLI::IsMember({"apart", "touching", "overlapping"}))
       ->capture_default_str();
-  render_app->add_option("--grading", render.grading, "Grading: a file, or a name in assets/gradings")->capture_default_str();
-  auto* snapshot = render_app->add_option("--snapshot", render.snapshot,
-                                          "Instead: a pile dumped towards +x, of a run (particles.h5) or any snapshot");
-  render_app->add_option("--slope", render.slope, "Angle of the pile's slope, degrees, at right angles to which it is seen; default: its own")
+  render_app->add_option("--grading", render.grading, "Grading: a file, or a name in assets/gradings")
+      ->capture_default_str();
+  auto* snapshot =
+      render_app->add_option("--snapshot", render.snapshot,
+                             "Instead: a pile dumped towards +x, of a run (particles.h5) or any snapshot");
+  render_app
+      ->add_option(
+          "--slope", render.slope,
+          "Angle of the pile's slope, degrees, at right angles to which it is seen; default: its own")
       ->check(CLI::Range(0.0, 90.0))
       ->needs(snapshot);
-  render_app->add_option("--pixels", render.pixels, "Size of the picture; that of a pile follows from the scale")->capture_default_str();
+  render_app
+      ->add_option("--pixels", render.pixels, "Size of the picture; that of a pile follows from the scale")
+      ->capture_default_str();
   render_app->add_option("--scale", render.scale, "Length of a pixel")->capture_default_str();
-  render_app->add_option("--coverage", render.coverage, "Area of all outlines over the picture's; default: 0.35, 0.5, 1.5")
+  render_app
+      ->add_option("--coverage", render.coverage,
+                   "Area of all outlines over the picture's; default: 0.35, 0.5, 1.5")
       ->check(CLI::Range(0.01, 5.0));
-  render_app->add_option("--segregation", render.segregation, "How much coarser the foot is than the top, -1 to 1")
+  render_app
+      ->add_option("--segregation", render.segregation, "How much coarser the foot is than the top, -1 to 1")
       ->check(CLI::Range(-1.0, 1.0))
       ->capture_default_str();
-  render_app->add_option("--sun", render.sun, "Azimuth (0 right, 90 top) and elevation, degrees")->capture_default_str();
-  render_app->add_option("--ambient", render.ambient, "Share of the light that shadows get")->check(CLI::Range(0.0, 1.0))->capture_default_str();
-  render_app->add_option("--texture", render.texture, "Deviation of brightness within a grain")->check(CLI::Range(0.0, 1.0))->capture_default_str();
-  render_app->add_option("--blur", render.blur, "Standard deviation of the lens's blur, px")->check(CLI::Range(0.0, 20.0))->capture_default_str();
-  render_app->add_option("--noise", render.noise, "Standard deviation of the sensor's noise, share of white")->check(CLI::Range(0.0, 1.0))->capture_default_str();
-  render_app->add_option("--target-diameter", render.target_diameter, "Of the magenta disc, or none")->capture_default_str();
+  render_app->add_option("--sun", render.sun, "Azimuth (0 right, 90 top) and elevation, degrees")
+      ->capture_default_str();
+  render_app->add_option("--ambient", render.ambient, "Share of the light that shadows get")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  render_app->add_option("--texture", render.texture, "Deviation of brightness within a grain")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  render_app->add_option("--blur", render.blur, "Standard deviation of the lens's blur, px")
+      ->check(CLI::Range(0.0, 20.0))
+      ->capture_default_str();
+  render_app->add_option("--noise", render.noise, "Standard deviation of the sensor's noise, share of white")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  render_app->add_option("--target-diameter", render.target_diameter, "Of the magenta disc, or none")
+      ->capture_default_str();
   render_app->add_option("--seed", render.seed, "Of places, texture and noise")->capture_default_str();
   render_app->add_flag("--force", render.force, "Write over files that are there");
   render_app->footer(

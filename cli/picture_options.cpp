@@ -24,7 +24,8 @@ std::optional<double> length_of(std::string_view text) {
 
 std::optional<double> length_in(const std::string& option, const std::string& text) {
   const auto length = length_of(text);
-  if (!length) fmt::print(stderr, "{} {}: a length above 0 with its unit, like 0.5m, 50cm, 500mm\n", option, text);
+  if (!length)
+    fmt::print(stderr, "{} {}: a length above 0 with its unit, like 0.5m, 50cm, 500mm\n", option, text);
   return length;
 }
 
@@ -63,7 +64,8 @@ std::optional<std::vector<cv::Point>> polygon_in(const std::string& option, cons
     corners.emplace_back(static_cast<int>(at->first), static_cast<int>(at->second));
   }
   if (corners.size() < 2) {
-    fmt::print(stderr, "{} {}: corners in pixels, \"x,y x,y x,y\", or two opposite ones of a rectangle\n", option, text);
+    fmt::print(stderr, "{} {}: corners in pixels, \"x,y x,y x,y\", or two opposite ones of a rectangle\n",
+               option, text);
     return std::nullopt;
   }
   if (corners.size() == 2) {

@@ -9,17 +9,17 @@
 
 struct ImageOptions {
   std::vector<std::filesystem::path> photos;
-  std::string scale;                   ///< "1.2cm/px"; empty: from targets in the picture
+  std::string scale;  ///< "1.2cm/px"; empty: from targets in the picture
   std::string target_diameter = "0.5m";
   int sections = 6;
-  std::string region;                  ///< "x,y x,y ...", px; empty: the whole picture
-  std::string model = "ellipsoid";     ///< sphere, ellipsoid, feret
-  double shape_factor = 0;             ///< 0: the thesis's
-  std::filesystem::path weighed;       ///< table of weighed fractions; empty: none
+  std::string region;               ///< "x,y x,y ...", px; empty: the whole picture
+  std::string model = "ellipsoid";  ///< sphere, ellipsoid, feret
+  double shape_factor = 0;          ///< 0: the thesis's
+  std::filesystem::path weighed;    ///< table of weighed fractions; empty: none
   double detection_limit_cm2 = 25;
-  double density = 2760;               ///< kg/m3
+  double density = 2760;  ///< kg/m3
   double neck = 0.75;
-  std::string threshold = "otsu";      ///< otsu, local
+  std::string threshold = "otsu";  ///< otsu, local
   bool no_edges = false;
   std::vector<std::filesystem::path> truth;  ///< one a photo; empty: none
   std::filesystem::path scenario;            ///< that a dataset names; empty: no dataset
@@ -38,7 +38,7 @@ struct RenderOptions {
   std::string scale = "1.2cm/px";
   std::optional<double> coverage;
   double segregation = 0.5;
-  std::string sun = "135,45";      ///< azimuth, elevation, degrees
+  std::string sun = "135,45";  ///< azimuth, elevation, degrees
   double ambient = 0.3, texture = 0.15, blur = 0.8, noise = 0.01;
   std::string target_diameter = "0.5m";
   std::uint64_t seed = 1;

@@ -64,7 +64,8 @@ bool settings_of(const RenderOptions& options, scree::PhotoSettings& photo, scre
 scree::RockScene scene_of(const RenderOptions& options, const scree::SceneSettings& settings) {
   if (options.snapshot.empty()) {
     const fs::path known = asset_dir() / "gradings" / (options.grading + ".csv");
-    return make_scene(scree::read_grading(fs::exists(options.grading) ? fs::path(options.grading) : known), settings);
+    return make_scene(scree::read_grading(fs::exists(options.grading) ? fs::path(options.grading) : known),
+                      settings);
   }
   scree::SnapshotRead read = scree::read_snapshot(options.snapshot, {});
   std::optional<double> slope = options.slope;
@@ -73,7 +74,8 @@ scree::RockScene scene_of(const RenderOptions& options, const scree::SceneSettin
     for (const scree::Grain& grain : read.snapshot.grains) top = std::max(top, grain.position.z());
     slope = scree::slope_angle(scree::slope_profile(read.snapshot.grains), top);
     if (!slope)
-      throw scree::FileError(options.snapshot, 0, "shows no slope along x; say at which angle it is seen: --slope 37");
+      throw scree::FileError(options.snapshot, 0,
+                             "shows no slope along x; say at which angle it is seen: --slope 37");
     fmt::print("slope: {:.1f} degrees\n", *slope);
   }
   return scree::view_of_slope(read.snapshot.grains, read.fixed, *slope, 0.5);
@@ -93,7 +95,8 @@ int run_render(const RenderOptions& options) {
   const fs::path truth = fs::path(options.out).replace_extension(".truth.csv");
   for (const fs::path& file : {options.out, truth})
     if (fs::exists(file) && !options.force) {
-      fmt::print(stderr, "{}: is there already; choose another name, or --force to write over it\n", file.string());
+      fmt::print(stderr, "{}: is there already; choose another name, or --force to write over it\n",
+                 file.string());
       return kBadInput;
     }
   scree::Photo made;

@@ -26,7 +26,8 @@ int percentile(const Histogram& counts, double share) {
   std::int64_t all = 0, below = 0;
   for (const std::int64_t n : counts) all += n;
   int value = 0;
-  while (value < 255 && static_cast<double>(below += counts[value]) < share * static_cast<double>(all)) ++value;
+  while (value < 255 && static_cast<double>(below += counts[value]) < share * static_cast<double>(all))
+    ++value;
   return value;
 }
 
@@ -91,8 +92,10 @@ Foreground find_rock(const cv::Mat3b& picture, const cv::Mat1b& ignore, const Fo
                           settings.local_window_px | 1, settings.local_offset);
   }
   found.rock.setTo(0, ignore);
-  if (settings.opening_px > 0) cv::morphologyEx(found.rock, found.rock, cv::MORPH_OPEN, disc(settings.opening_px));
-  if (settings.closing_px > 0) cv::morphologyEx(found.rock, found.rock, cv::MORPH_CLOSE, disc(settings.closing_px));
+  if (settings.opening_px > 0)
+    cv::morphologyEx(found.rock, found.rock, cv::MORPH_OPEN, disc(settings.opening_px));
+  if (settings.closing_px > 0)
+    cv::morphologyEx(found.rock, found.rock, cv::MORPH_CLOSE, disc(settings.closing_px));
   fill_holes(found.rock, settings.largest_hole_px);
   if (settings.edges) {
     // Steps of a sixth of the range over the pixels of the blur begin an edge; half of that continues it.

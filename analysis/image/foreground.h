@@ -13,11 +13,11 @@ enum class Threshold {
 
 struct ForegroundSettings {
   Threshold threshold = Threshold::otsu;
-  int local_window_px = 151;  ///< side of the square around a pixel
-  double local_offset = 8;    ///< of 255: how much darker than its surroundings a gap is
-  bool edges = true;          ///< sharp steps of brightness are borders too: for rock that lies on rock
-  int opening_px = 1;         ///< radius of erosion, then dilation: removes specks and thin bridges
-  int closing_px = 1;         ///< radius of dilation, then erosion: mends cracks
+  int local_window_px = 151;    ///< side of the square around a pixel
+  double local_offset = 8;      ///< of 255: how much darker than its surroundings a gap is
+  bool edges = true;            ///< sharp steps of brightness are borders too: for rock that lies on rock
+  int opening_px = 1;           ///< radius of erosion, then dilation: removes specks and thin bridges
+  int closing_px = 1;           ///< radius of dilation, then erosion: mends cracks
   double largest_hole_px = 25;  ///< area; dark spots within rock up to this are filled
 };
 

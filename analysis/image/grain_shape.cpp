@@ -63,8 +63,7 @@ double crofton(const cv::Mat1b& region) {
       if (x > 0) diagonal += here != (framed(y + 1, x - 1) != 0);
     }
   // Lines are 1 px apart along rows and columns, 1 / sqrt(2) along diagonals.
-  return pi / 2 *
-         (static_cast<double>(straight) + static_cast<double>(diagonal) / std::numbers::sqrt2) / 4;
+  return pi / 2 * (static_cast<double>(straight) + static_cast<double>(diagonal) / std::numbers::sqrt2) / 4;
 }
 
 // Largest and smallest width of the convex hull. The smallest lies square to a side of it.
@@ -89,7 +88,9 @@ void measure_ferets(const cv::Mat1b& region, GrainShape& shape) {
       const cv::Point to = p - hull[i];
       largest = std::max(largest, std::hypot(to.x, to.y));
       if (length > 0)
-        across = std::max(across, std::abs(static_cast<double>(side.x) * to.y - static_cast<double>(side.y) * to.x) / length);
+        across = std::max(
+            across,
+            std::abs(static_cast<double>(side.x) * to.y - static_cast<double>(side.y) * to.x) / length);
     }
     smallest = std::min(smallest, across);
   }
@@ -100,10 +101,18 @@ void measure_ferets(const cv::Mat1b& region, GrainShape& shape) {
 
 }  // namespace
 
-double GrainShape::equal_area_diameter() const { return std::sqrt(4 * area / pi); }
-double GrainShape::circularity() const { return 4 * pi * area / (perimeter * perimeter); }
-double GrainShape::elongation() const { return minor / major; }
-double GrainShape::roundness() const { return 4 * area / (pi * feret_max * feret_max); }
+double GrainShape::equal_area_diameter() const {
+  return std::sqrt(4 * area / pi);
+}
+double GrainShape::circularity() const {
+  return 4 * pi * area / (perimeter * perimeter);
+}
+double GrainShape::elongation() const {
+  return minor / major;
+}
+double GrainShape::roundness() const {
+  return 4 * area / (pi * feret_max * feret_max);
+}
 
 GrainShape shape_of(const cv::Mat1b& region) {
   GrainShape shape;

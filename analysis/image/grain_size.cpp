@@ -20,7 +20,8 @@ std::string_view name_of(SizeModel model) {
   return "feret";
 }
 
-GrainSize size_of(const GrainShape& shape, double m_per_px, SizeModel model, double shape_factor, double density) {
+GrainSize size_of(const GrainShape& shape, double m_per_px, SizeModel model, double shape_factor,
+                  double density) {
   const auto ellipsoid = [&](double a, double b) {
     return GrainSize{b * m_per_px,
                      density * std::numbers::pi / 6 * a * b * shape_factor * b * std::pow(m_per_px, 3)};
@@ -35,7 +36,8 @@ ShapeFactor calibrate_shape_factor(std::span<const WeighedFraction> fractions) {
   ShapeFactor factor;
   double weighed = 0, with_lambda_1 = 0;
   for (const WeighedFraction& fraction : fractions) {
-    if (!(fraction.weighed > 0)) throw std::invalid_argument(fmt::format("{}: a mass above 0 is needed", fraction.name));
+    if (!(fraction.weighed > 0))
+      throw std::invalid_argument(fmt::format("{}: a mass above 0 is needed", fraction.name));
     if (!(fraction.with_lambda_1 > 0))
       throw std::invalid_argument(fmt::format("{}: no grain was found in the picture", fraction.name));
     factor.by_fraction.push_back(fraction.weighed / fraction.with_lambda_1);

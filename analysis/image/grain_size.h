@@ -27,18 +27,19 @@ struct GrainSize {
 };
 
 /// `m_per_px`, `shape_factor` lambda = c / b and `density` (kg/m3) above 0. A sphere has no use for lambda.
-GrainSize size_of(const GrainShape& shape, double m_per_px, SizeModel model, double shape_factor, double density);
+GrainSize size_of(const GrainShape& shape, double m_per_px, SizeModel model, double shape_factor,
+                  double density);
 
 /// Rock that was photographed and weighed.
 struct WeighedFraction {
   std::string name;
-  double weighed = 0;      ///< kg
+  double weighed = 0;        ///< kg
   double with_lambda_1 = 0;  ///< kg: sum over its grains of density pi/6 a b^2
 };
 
 /// The shape factor for which the mass from images is the one weighed (thesis, equation 4.3).
 struct ShapeFactor {
-  double value = 0;                 ///< of all fractions together
+  double value = 0;  ///< of all fractions together
   std::vector<double> by_fraction;
 };
 /// Throws std::invalid_argument without fractions, or for masses that are not above 0.

@@ -72,7 +72,8 @@ struct Nearest {
 Nearest nearest_grains(const cv::Mat1i& labels) {
   Nearest nearest;
   cv::Mat1i index;
-  cv::distanceTransform(labels == 0, nearest.distance, index, cv::DIST_L2, cv::DIST_MASK_5, cv::DIST_LABEL_PIXEL);
+  cv::distanceTransform(labels == 0, nearest.distance, index, cv::DIST_L2, cv::DIST_MASK_5,
+                        cv::DIST_LABEL_PIXEL);
   std::vector<int> label_of;
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x)
@@ -120,7 +121,8 @@ Labels split_grains(const cv::Mat1b& rock, const cv::Mat1b& edges, double neck) 
   cv::distanceTransform(framed, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
   cv::Mat1i height(distance.size());
   for (int y = 0; y < height.rows; ++y)
-    for (int x = 0; x < height.cols; ++x) height(y, x) = static_cast<int>(std::lround(distance(y, x) * kSteps));
+    for (int x = 0; x < height.cols; ++x)
+      height(y, x) = static_cast<int>(std::lround(distance(y, x) * kSteps));
 
   const int row = height.cols;
   const int around[8] = {-row - 1, -row, -row + 1, -1, 1, row - 1, row, row + 1};

@@ -46,7 +46,8 @@ void match(const CheckedPhoto& photo, SizeModel model, std::vector<KnownGrain>& 
 // Logistic regression of detection on ln d by Newton's method; a prior of deviation 25 on the steepness keeps
 // a perfectly sharp step finite.
 void fit_detection(const std::vector<KnownGrain>& known, ImageBias& bias) {
-  const auto seen = std::count_if(known.begin(), known.end(), [](const KnownGrain& g) { return g.ratio > 0; });
+  const auto seen =
+      std::count_if(known.begin(), known.end(), [](const KnownGrain& g) { return g.ratio > 0; });
   if (seen == static_cast<std::ptrdiff_t>(known.size()) || seen == 0) return;
   const double centre = std::log(bias.reference);
   double a = 0, b = 4;  // logit of the share = a + b (ln d - centre)
@@ -95,9 +96,9 @@ void fit_size(const std::vector<KnownGrain>& known, ImageBias& bias) {
   double rest = 0;
   for (const KnownGrain& grain : known)
     if (grain.ratio > 0)
-      rest += std::pow(std::log(grain.ratio) - at_reference -
-                           bias.exponent * std::log(grain.diameter / bias.reference),
-                       2);
+      rest += std::pow(
+          std::log(grain.ratio) - at_reference - bias.exponent * std::log(grain.diameter / bias.reference),
+          2);
   bias.width = std::sqrt(rest / (n - 2));
 }
 
@@ -111,9 +112,10 @@ void sort_into_classes(const std::vector<KnownGrain>& known, ImageBias& bias) {
   }
   for (const auto& [k, n] : visible) {
     const MeanStd log_ratio = mean_std(ratios[k]);
-    bias.classes.push_back({std::exp2(k / 2.0), std::exp2((k + 1) / 2.0), n, log_ratio.n,
-                            log_ratio.n > 0 ? std::exp(log_ratio.mean) : std::numeric_limits<double>::quiet_NaN(),
-                            log_ratio.std});
+    bias.classes.push_back(
+        {std::exp2(k / 2.0), std::exp2((k + 1) / 2.0), n, log_ratio.n,
+         log_ratio.n > 0 ? std::exp(log_ratio.mean) : std::numeric_limits<double>::quiet_NaN(),
+         log_ratio.std});
   }
 }
 

@@ -34,14 +34,14 @@ struct ImageBias {
 /// seen, by their true diameters and masses.
 struct TruthCheck {
   std::vector<ImageGrading> known, measured;  ///< whole, then sections
-  /// Of perfect outlines of what can be seen, by the size model (ellipses for Feret's). What remains against `known` is
-  /// rock that lies on rock, which no analysis of a picture can tell.
+  /// Of perfect outlines of what can be seen, by the size model (ellipses for Feret's). What remains against
+  /// `known` is rock that lies on rock, which no analysis of a picture can tell.
   std::vector<ImageGrading> ideal;
-  double scene_d50 = 0;                       ///< m, of all grains, hidden ones too
+  double scene_d50 = 0;  ///< m, of all grains, hidden ones too
 };
 
-/// Grains found in one picture and its truth. A known grain belongs to the outline that has the middle of what
-/// is seen of it; where an outline has several, the one of which most is seen.
+/// Grains found in one picture and its truth. A known grain belongs to the outline that has the middle of
+/// what is seen of it; where an outline has several, the one of which most is seen.
 struct CheckedPhoto {
   const PhotoAnalysis* found;
   const PhotoTruth* truth;

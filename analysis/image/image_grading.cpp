@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-ImageGrading grading_of(std::string name, const std::vector<double>& diameters, const std::vector<double>& masses) {
+ImageGrading grading_of(std::string name, const std::vector<double>& diameters,
+                        const std::vector<double>& masses) {
   ImageGrading out;
   out.name = std::move(name);
   out.grains = static_cast<int>(diameters.size());

@@ -7,21 +7,25 @@
 namespace scree {
 namespace {
 
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : ""; }
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "";
+}
 
-std::string grading_row(std::size_t image, std::size_t section, const ImageGrading& grading, const std::string& name) {
+std::string grading_row(std::size_t image, std::size_t section, const ImageGrading& grading,
+                        const std::string& name) {
   const PassingCurve& curve = *grading.curve;
   std::string row = fmt::format("{},{}", image, section);
   for (const double cm : {curve.diameter(1), grading.d95, grading.d90, grading.d80, grading.d60, grading.d50,
                           grading.d30, grading.d15, grading.d10, curve.diameter(0)})
     row += fmt::format(",{:.2f}", 100 * cm);
   return row + fmt::format(",{:.2f},{:.2f},{},{},{},{}\n", grading.cu, grading.cc,
-                           std::isfinite(grading.chi) ? fmt::format("{:.3f}", grading.chi) : "", grading.grains,
-                           number(grading.mass), name);
+                           std::isfinite(grading.chi) ? fmt::format("{:.3f}", grading.chi) : "",
+                           grading.grains, number(grading.mass), name);
 }
 
 constexpr const char* kGradingColumns =
-    "image,section,d100_cm,d95_cm,d90_cm,d80_cm,d60_cm,d50_cm,d30_cm,d15_cm,d10_cm,d0_cm,cu,cc,chi,grains,mass_kg,"
+    "image,section,d100_cm,d95_cm,d90_cm,d80_cm,d60_cm,d50_cm,d30_cm,d15_cm,d10_cm,d0_cm,cu,cc,chi,grains,"
+    "mass_kg,"
     "picture\n";
 
 // A name as a field of CSV.
@@ -35,9 +39,11 @@ std::string field(const std::string& name) {
 
 std::string grains_csv(const std::vector<AnalysedPhoto>& photos, SizeModel model, double shape_factor) {
   std::string text = fmt::format(
-      "# Outlines of photographs; sizes by the model {}. elongation b/a, circularity 4 pi area / perimeter^2, roundness "
+      "# Outlines of photographs; sizes by the model {}. elongation b/a, circularity 4 pi area / "
+      "perimeter^2, roundness "
       "4 area / (pi feret_max^2), flatness c/b = {:g} taken for all\n"
-      "image,section,x_px,y_px,diameter_m,mass_kg,a_m,b_m,angle_deg,feret_max_m,feret_min_m,area_cm2,circularity,"
+      "image,section,x_px,y_px,diameter_m,mass_kg,a_m,b_m,angle_deg,feret_max_m,feret_min_m,area_cm2,"
+      "circularity,"
       "elongation,roundness,weight\n",
       name_of(model), shape_factor);
   for (std::size_t i = 0; i < photos.size(); ++i)
@@ -45,12 +51,12 @@ std::string grains_csv(const std::vector<AnalysedPhoto>& photos, SizeModel model
       const GrainShape& shape = grain.shape;
       const GrainSize& size = grain.size[static_cast<std::size_t>(model)];
       const double m = grain.m_per_px;
-      text += fmt::format("{},{},{:.1f},{:.1f},{:.5g},{:.5g},{:.5g},{:.5g},{:.1f},{:.5g},{:.5g},{:.5g},{:.3f},{:.3f},{:.3f},"
-                          "{:.4f}\n",
-                          i + 1, grain.section + 1, shape.x, shape.y, size.diameter, size.mass, shape.major * m,
-                          shape.minor * m, shape.angle_deg, shape.feret_max * m, shape.feret_min * m,
-                          1e4 * shape.area * m * m, shape.circularity(), shape.elongation(), shape.roundness(),
-                          grain.weight);
+      text += fmt::format(
+          "{},{},{:.1f},{:.1f},{:.5g},{:.5g},{:.5g},{:.5g},{:.1f},{:.5g},{:.5g},{:.5g},{:.3f},{:.3f},{:.3f},"
+          "{:.4f}\n",
+          i + 1, grain.section + 1, shape.x, shape.y, size.diameter, size.mass, shape.major * m,
+          shape.minor * m, shape.angle_deg, shape.feret_max * m, shape.feret_min * m,
+          1e4 * shape.area * m * m, shape.circularity(), shape.elongation(), shape.roundness(), grain.weight);
     }
   return text;
 }
@@ -59,7 +65,8 @@ std::string gradings_csv(const std::vector<AnalysedPhoto>& photos) {
   std::string text = kGradingColumns;
   for (std::size_t i = 0; i < photos.size(); ++i)
     for (std::size_t k = 0; k < photos[i].gradings.size(); ++k)
-      if (photos[i].gradings[k].curve) text += grading_row(i + 1, k, photos[i].gradings[k], field(photos[i].name));
+      if (photos[i].gradings[k].curve)
+        text += grading_row(i + 1, k, photos[i].gradings[k], field(photos[i].name));
   return text;
 }
 
@@ -70,7 +77,8 @@ std::string models_csv(const std::vector<AnalysedPhoto>& photos, int sections) {
       const std::vector<ImageGrading> gradings = gradings_of(photos[i].found.grains, sections, model);
       for (std::size_t k = 0; k < gradings.size(); ++k)
         if (gradings[k].curve)
-          text += fmt::format("{},{}", name_of(model), grading_row(i + 1, k, gradings[k], field(photos[i].name)));
+          text +=
+              fmt::format("{},{}", name_of(model), grading_row(i + 1, k, gradings[k], field(photos[i].name)));
     }
   return text;
 }
@@ -93,12 +101,14 @@ std::string passing_csv(const std::vector<AnalysedPhoto>& photos) {
 
 std::string bias_csv(const ImageBias& bias) {
   std::string text = fmt::format(
-      "# Known grains of virtual photographs, by true diameter. Outlines {}, of which {} belong to a known grain.\n"
+      "# Known grains of virtual photographs, by true diameter. Outlines {}, of which {} belong to a known "
+      "grain.\n"
       "diameter_low_m,diameter_high_m,visible,detected,detected_share,size_ratio,ln_ratio_std\n",
       bias.outlines, bias.matched);
   for (const BiasClass& size : bias.classes)
-    text += fmt::format("{:.5g},{:.5g},{},{},{:.4f},{},{}\n", size.low, size.high, size.visible, size.detected,
-                        static_cast<double>(size.detected) / size.visible, number(size.ratio), number(size.deviation));
+    text += fmt::format("{:.5g},{:.5g},{},{},{:.4f},{},{}\n", size.low, size.high, size.visible,
+                        size.detected, static_cast<double>(size.detected) / size.visible, number(size.ratio),
+                        number(size.deviation));
   return text;
 }
 

@@ -19,8 +19,9 @@ struct AnalysedPhoto {
 /// descriptors, and `weight`.
 std::string grains_csv(const std::vector<AnalysedPhoto>& photos, SizeModel model, double shape_factor);
 
-/// A row a section, with the columns of the thesis's tables: `image,section,d100_cm,d95_cm ... d10_cm,d0_cm,cu,cc,
-/// chi,grains,mass_kg,picture`; section 0 is the whole region. Empty sections have no row.
+/// A row a section, with the columns of the thesis's tables: `image,section,d100_cm,d95_cm ...
+/// d10_cm,d0_cm,cu,cc, chi,grains,mass_kg,picture`; section 0 is the whole region. Empty sections have no
+/// row.
 std::string gradings_csv(const std::vector<AnalysedPhoto>& photos);
 
 /// The same of all three models, `model` first.

@@ -9,7 +9,8 @@ namespace scree {
 
 cv::Mat3b overlay(const cv::Mat3b& picture, const PhotoAnalysis& found, int sections, int longest_side) {
   const cv::Scalar blue(255, 160, 0), green(60, 220, 60);
-  const double shrink = std::min(1.0, static_cast<double>(longest_side) / std::max(picture.cols, picture.rows));
+  const double shrink =
+      std::min(1.0, static_cast<double>(longest_side) / std::max(picture.cols, picture.rows));
   cv::Mat3b out;
   cv::resize(picture, out, {}, shrink, shrink, cv::INTER_AREA);
   std::vector<char> counted(found.labels.count + 1, 0);
@@ -32,7 +33,8 @@ cv::Mat3b overlay(const cv::Mat3b& picture, const PhotoAnalysis& found, int sect
     const int left = static_cast<int>(box.x * shrink), right = static_cast<int>(box.br().x * shrink);
     cv::line(out, {left, y}, {right, y}, blue, thick);
     if (k < sections)
-      cv::putText(out, fmt::format("S{}", k + 1), {left + 8, y + 24}, cv::FONT_HERSHEY_SIMPLEX, 0.8, blue, 2, cv::LINE_AA);
+      cv::putText(out, fmt::format("S{}", k + 1), {left + 8, y + 24}, cv::FONT_HERSHEY_SIMPLEX, 0.8, blue, 2,
+                  cv::LINE_AA);
   }
   for (const ScaleTarget& target : found.targets)
     cv::circle(out, cv::Point(static_cast<int>(target.x * shrink), static_cast<int>(target.y * shrink)),

@@ -43,14 +43,16 @@ ImageScale scale_for(const cv::Mat3b& picture, const PhotoAnalysisSettings& sett
   const double first = settings.target_diameter / out.targets.front().diameter_px,
                last = settings.target_diameter / out.targets.back().diameter_px;
   if (scale.per_row == 0 && std::abs(first / last - 1) > 0.05)
-    out.notes.push_back(fmt::format(
-        "the targets differ by {:.0f} % in size: the mean is taken; lay them at the top and the foot of the slope",
-        100 * std::abs(first / last - 1)));
+    out.notes.push_back(
+        fmt::format("the targets differ by {:.0f} % in size: the mean is taken; lay them at the top and the "
+                    "foot of the slope",
+                    100 * std::abs(first / last - 1)));
   for (const ScaleTarget& target : out.targets)
     if (target.tilt < 0.9)
-      out.notes.push_back(fmt::format("a target is seen at an angle (axes 1 : {:.2f}): so is the rock, its outlines "
-                                      "are shorter in that direction",
-                                      target.tilt));
+      out.notes.push_back(
+          fmt::format("a target is seen at an angle (axes 1 : {:.2f}): so is the rock, its outlines "
+                      "are shorter in that direction",
+                      target.tilt));
   return scale;
 }
 
@@ -59,8 +61,8 @@ cv::Rect box_of_region(const cv::Mat3b& picture, const std::vector<cv::Point>& r
   if (region.empty()) return frame;
   const cv::Rect box = cv::boundingRect(region) & frame;
   if (box.width < 10 || box.height < 10)
-    throw std::runtime_error(fmt::format("the region has {} x {} pixels within the picture of {} x {}", box.width,
-                                         box.height, picture.cols, picture.rows));
+    throw std::runtime_error(fmt::format("the region has {} x {} pixels within the picture of {} x {}",
+                                         box.width, box.height, picture.cols, picture.rows));
   return box;
 }
 
@@ -92,7 +94,8 @@ PhotoAnalysis analyse_photo(const cv::Mat3b& picture, const PhotoAnalysisSetting
   const Foreground found = find_rock(picture, ignore, foreground);
   out.rock_share = static_cast<double>(cv::countNonZero(found.rock)) / std::max(1, cv::countNonZero(region));
   out.labels = split_grains(found.rock, found.edges, settings.neck);
-  if (settings.border_reach > 0) out.labels = settle_borders(out.labels, found.grey, ignore, settings.border_reach);
+  if (settings.border_reach > 0)
+    out.labels = settle_borders(out.labels, found.grey, ignore, settings.border_reach);
 
   const std::vector<cv::Rect> boxes = boxes_of(out.labels);
   for (int label = 1; label <= out.labels.count; ++label) {
@@ -128,14 +131,16 @@ PhotoAnalysis analyse_photo(const cv::Mat3b& picture, const PhotoAnalysisSetting
     out.grains.push_back(grain);
   }
   if (out.grains.empty())
-    throw std::runtime_error(fmt::format(
-        "no grain above the detection limit of {:.3g} cm2 is found ({} outlines below it, {} cut by the frame)",
-        1e4 * settings.detection_area, out.below_limit, out.cut_by_frame));
+    throw std::runtime_error(
+        fmt::format("no grain above the detection limit of {:.3g} cm2 is found ({} outlines below it, {} cut "
+                    "by the frame)",
+                    1e4 * settings.detection_area, out.below_limit, out.cut_by_frame));
   const double limit_px = std::sqrt(settings.detection_area) / out.scale.at(picture.rows / 2.0);
   if (limit_px < 3)
-    out.notes.push_back(fmt::format(
-        "the detection limit is {:.1f} pixels wide: outlines of so few pixels are coarse; take a picture with more",
-        limit_px));
+    out.notes.push_back(
+        fmt::format("the detection limit is {:.1f} pixels wide: outlines of so few pixels are coarse; take a "
+                    "picture with more",
+                    limit_px));
   return out;
 }
 

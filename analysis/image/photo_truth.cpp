@@ -10,8 +10,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kColumns[] = {"id",      "x_px",        "y_px",         "diameter_m",
-                                    "mass_kg", "visible_cm2", "visible_share", "visible_a_m", "visible_b_m"};
+constexpr const char* kColumns[] = {"id",          "x_px",          "y_px",        "diameter_m", "mass_kg",
+                                    "visible_cm2", "visible_share", "visible_a_m", "visible_b_m"};
 
 // The number behind "# name = " in a comment line.
 double stated(const fs::path& file, const std::string& bytes, const std::string& name) {
@@ -19,7 +19,8 @@ double stated(const fs::path& file, const std::string& bytes, const std::string&
   const auto at = bytes.find(start);
   if (at != std::string::npos) {
     const auto from = at + start.size();
-    const auto value = number_in(trimmed(std::string_view(bytes).substr(from, bytes.find('\n', from) - from)));
+    const auto value =
+        number_in(trimmed(std::string_view(bytes).substr(from, bytes.find('\n', from) - from)));
     if (value && *value > 0) return *value;
   }
   throw FileError(file, 0, fmt::format("has no line `{}NUMBER`; scree render writes one", start));
@@ -33,8 +34,9 @@ std::string truth_csv(const PhotoTruth& truth) {
       "# m_per_px = {:.9g}\n# scene_d50_m = {:.9g}\n{}\n",
       truth.m_per_px, truth.scene_d50, fmt::join(kColumns, ","));
   for (const VisibleGrain& grain : truth.grains)
-    text += fmt::format("{},{:.2f},{:.2f},{:.6g},{:.6g},{:.6g},{:.4f},{:.6g},{:.6g}\n", grain.id, grain.x, grain.y,
-                        grain.diameter, grain.mass, 1e4 * grain.visible_area, grain.visible_share, grain.visible_a, grain.visible_b);
+    text += fmt::format("{},{:.2f},{:.2f},{:.6g},{:.6g},{:.6g},{:.4f},{:.6g},{:.6g}\n", grain.id, grain.x,
+                        grain.y, grain.diameter, grain.mass, 1e4 * grain.visible_area, grain.visible_share,
+                        grain.visible_a, grain.visible_b);
   return text;
 }
 

@@ -30,7 +30,8 @@ std::int64_t big_endian(std::string_view bytes, std::size_t at, int n) {
 PictureHeader jpeg_header(std::string_view bytes) {
   std::size_t at = 2;
   for (;;) {
-    if (byte_at(bytes, at) != 0xff) throw std::runtime_error("is a damaged JPEG: no segment where one must be");
+    if (byte_at(bytes, at) != 0xff)
+      throw std::runtime_error("is a damaged JPEG: no segment where one must be");
     while (byte_at(bytes, at) == 0xff) ++at;  // fill bytes
     const unsigned marker = byte_at(bytes, at++);
     // C4, C8 and CC are tables and reserved ones within the range of frames.
@@ -92,8 +93,9 @@ cv::Mat read_photograph(const fs::path& file) {
   double low = 0, high = 0;
   cv::minMaxLoc(picture.reshape(1), &low, &high);
   if (high - low < 16)
-    throw FileError(file, 0,
-                    fmt::format("shows nothing: all of its pixels are between {:.0f} and {:.0f} of 255", low, high));
+    throw FileError(
+        file, 0,
+        fmt::format("shows nothing: all of its pixels are between {:.0f} and {:.0f} of 255", low, high));
   return picture;
 }
 
@@ -101,7 +103,8 @@ void write_picture(const fs::path& file, const cv::Mat& picture) {
   std::vector<uchar> bytes;
   const std::string ending = file.extension().string();
   if (ending != ".png" && ending != ".jpg" && ending != ".jpeg")
-    throw std::runtime_error(fmt::format("cannot write {}: a picture's name ends with .png or .jpg", file.string()));
+    throw std::runtime_error(
+        fmt::format("cannot write {}: a picture's name ends with .png or .jpg", file.string()));
   if (!cv::imencode(ending, picture, bytes, {cv::IMWRITE_JPEG_QUALITY, 88, cv::IMWRITE_PNG_COMPRESSION, 6}))
     fail_to_write(file, "the picture cannot be packed");
   write_text_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});

@@ -197,8 +197,9 @@ PhotoTruth truth_of(const Buffers& buffers, const RockScene& scene, double m_per
     const GrainShape shape = shape_of(buffers.owner(seen[i]) == static_cast<int>(i));
     const double area = shape.area * m_per_px * m_per_px;
     const double outline = std::numbers::pi / 4 * grain.diameter * grain.diameter;
-    truth.grains.push_back({grain.id, seen[i].x + shape.x, seen[i].y + shape.y, grain.diameter, grain.mass, area,
-                            std::min(area / outline, 1.0), shape.major * m_per_px, shape.minor * m_per_px});
+    truth.grains.push_back({grain.id, seen[i].x + shape.x, seen[i].y + shape.y, grain.diameter, grain.mass,
+                            area, std::min(area / outline, 1.0), shape.major * m_per_px,
+                            shape.minor * m_per_px});
   }
   if (!diameters.empty()) truth.scene_d50 = PassingCurve(diameters, masses).diameter(0.5);
   return truth;
@@ -213,8 +214,7 @@ Photo render_photo(const RockScene& scene, const PhotoSettings& settings) {
     throw std::invalid_argument(fmt::format(
         "a picture of {:.0f} x {:.0f} pixels: at least one and at most {} megapixels; take another m_per_px",
         columns, rows, kLargestPicture / 1'000'000));
-  Buffers buffers =
-      draw_scene(scene, settings.m_per_px, static_cast<int>(columns), static_cast<int>(rows));
+  Buffers buffers = draw_scene(scene, settings.m_per_px, static_cast<int>(columns), static_cast<int>(rows));
   const cv::Mat1f grey = shade(buffers, scene, settings);
   // Rock is a little warmer than grey.
   cv::Mat3f light(grey.size());

@@ -18,29 +18,29 @@ struct PhotoSettings {
   double ambient = 0.3;           ///< share of the light that reaches shadows too
   double rock_albedo = 0.55;      ///< mean; grains differ by a fifth of it
   double ground_albedo = 0.18;
-  double texture = 0.15;          ///< deviation of brightness within a grain, share of its own
-  double blur_px = 0.8;           ///< standard deviation of the lens's blur
-  double noise = 0.01;            ///< standard deviation, share of white
-  double target_diameter = 0.5;   ///< m, of the magenta disc; 0: none
-  std::uint64_t seed = 1;         ///< of texture and noise
+  double texture = 0.15;         ///< deviation of brightness within a grain, share of its own
+  double blur_px = 0.8;          ///< standard deviation of the lens's blur
+  double noise = 0.01;           ///< standard deviation, share of white
+  double target_diameter = 0.5;  ///< m, of the magenta disc; 0: none
+  std::uint64_t seed = 1;        ///< of texture and noise
 };
 
 /// A grain of which something can be seen.
 struct VisibleGrain {
   std::int64_t id = 0;
-  double x = 0, y = 0;            ///< px, middle of what is seen of it
-  double diameter = 0;            ///< m
-  double mass = 0;                ///< kg
-  double visible_area = 0;        ///< m2
-  double visible_share = 0;       ///< of its outline
+  double x = 0, y = 0;                  ///< px, middle of what is seen of it
+  double diameter = 0;                  ///< m
+  double mass = 0;                      ///< kg
+  double visible_area = 0;              ///< m2
+  double visible_share = 0;             ///< of its outline
   double visible_a = 0, visible_b = 0;  ///< axes of the ellipse fitted to what is seen of it (GrainShape), m
 };
 
 /// What a virtual photograph shows.
 struct PhotoTruth {
   double m_per_px = 0;
-  double scene_d50 = 0;             ///< m, by mass of all grains of the scene, seen or not
-  std::vector<VisibleGrain> grains; ///< by rising id
+  double scene_d50 = 0;              ///< m, by mass of all grains of the scene, seen or not
+  std::vector<VisibleGrain> grains;  ///< by rising id
 };
 
 struct Photo {
@@ -53,8 +53,8 @@ struct Photo {
 /// for more pixels than kLargestPicture (picture_file.h), or none.
 Photo render_photo(const RockScene& scene, const PhotoSettings& settings);
 
-/// The truth as CSV: `id,x_px,y_px,diameter_m,mass_kg,visible_cm2,visible_share,visible_a_m,visible_b_m`, and in
-/// comment lines `# m_per_px = ...`, `# scene_d50_m = ...`.
+/// The truth as CSV: `id,x_px,y_px,diameter_m,mass_kg,visible_cm2,visible_share,visible_a_m,visible_b_m`, and
+/// in comment lines `# m_per_px = ...`, `# scene_d50_m = ...`.
 std::string truth_csv(const PhotoTruth& truth);
 /// Reads it. Throws FileError.
 PhotoTruth read_truth(const std::filesystem::path& file);

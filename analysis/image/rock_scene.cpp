@@ -37,8 +37,10 @@ std::vector<double> diameters_for(const Grading& grading, const SceneSettings& s
 class LaidGrains {
  public:
   LaidGrains(double width, double height, double largest)
-      : cell_(largest), columns_(static_cast<int>(width / cell_) + 1),
-        rows_(static_cast<int>(height / cell_) + 1), cells_(columns_ * rows_) {}
+      : cell_(largest),
+        columns_(static_cast<int>(width / cell_) + 1),
+        rows_(static_cast<int>(height / cell_) + 1),
+        cells_(columns_ * rows_) {}
 
   void add(const Grain& grain) {
     cells_[row(grain.position.y()) * columns_ + column(grain.position.x())].push_back(grain);
@@ -62,7 +64,8 @@ class LaidGrains {
 class Layout {
  public:
   Layout(const SceneSettings& settings, double largest)
-      : settings_(settings), random_(settings.seed, 2, RandomPurpose::picture),
+      : settings_(settings),
+        random_(settings.seed, 2, RandomPurpose::picture),
         laid_(settings.width, settings.height, largest) {}
 
   // A place that nobody has, or none after many tries.
@@ -90,8 +93,7 @@ class Layout {
     return {x, random_.uniform(r, settings_.height - r), 0};
   }
   Vec3 beside(const std::vector<Grain>& before, double diameter) {
-    const auto pick =
-        static_cast<std::size_t>(random_.uniform() * static_cast<double>(before.size()));
+    const auto pick = static_cast<std::size_t>(random_.uniform() * static_cast<double>(before.size()));
     const double angle = random_.uniform(0, 2 * std::numbers::pi);
     const double reach = (before[pick].diameter + diameter) / 2 * (1 + 1e-9);
     return before[pick].position + reach * Vec3(std::cos(angle), std::sin(angle), 0);
@@ -136,25 +138,26 @@ class Layout {
 RockScene make_scene(const Grading& grading, const SceneSettings& settings) {
   const double largest = grading.max_diameter();
   if (largest > 0.5 * std::min(settings.width, settings.height))
-    throw std::invalid_argument(
-        fmt::format("the largest grain, {:.3g} m, is more than half of the picture of {:.3g} m x {:.3g} m: take "
-                    "more pixels, or more metres a pixel",
-                    largest, settings.width, settings.height));
+    throw std::invalid_argument(fmt::format(
+        "the largest grain, {:.3g} m, is more than half of the picture of {:.3g} m x {:.3g} m: take "
+        "more pixels, or more metres a pixel",
+        largest, settings.width, settings.height));
   std::vector<double> diameters = diameters_for(grading, settings);
   if (settings.layout == GrainLayout::overlapping) {
     // A pile is no sorted one: any size may lie on any other.
     Random shuffle(settings.seed, 3, RandomPurpose::picture);
     for (std::size_t i = diameters.size(); i > 1; --i)
-      std::swap(diameters[i - 1], diameters[static_cast<std::size_t>(shuffle.uniform() * static_cast<double>(i))]);
+      std::swap(diameters[i - 1],
+                diameters[static_cast<std::size_t>(shuffle.uniform() * static_cast<double>(i))]);
   }
   RockScene scene{settings.width, settings.height, {}, {}};
   Layout layout(settings, largest * 1.15 + 0.1);
   for (const double d : diameters) {
     const auto at = layout.place(d, grading.passing(d), scene.grains);
     if (!at)
-      throw std::invalid_argument(fmt::format(
-          "no room for a grain of {:.3g} m after {} of {} grains: take a coverage below {:.2g}", d,
-          scene.grains.size(), diameters.size(), settings.coverage));
+      throw std::invalid_argument(
+          fmt::format("no room for a grain of {:.3g} m after {} of {} grains: take a coverage below {:.2g}",
+                      d, scene.grains.size(), diameters.size(), settings.coverage));
     Grain grain;
     grain.id = static_cast<std::int64_t>(scene.grains.size()) + 1;
     grain.position = *at;

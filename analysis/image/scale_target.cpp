@@ -15,7 +15,8 @@ namespace {
 bool is_magenta(const cv::Vec3b& pixel) {
   const int blue = pixel[0], green = pixel[1], red = pixel[2];
   const int bright = std::max(blue, red);
-  return bright >= 50 && std::min(blue, red) * 2 >= bright && 10 * (std::min(blue, red) - green) >= 3 * bright;
+  return bright >= 50 && std::min(blue, red) * 2 >= bright &&
+         10 * (std::min(blue, red) - green) >= 3 * bright;
 }
 
 // How much magenta a pixel has, in light: blur mixes light, and cameras store about its 2.2th root.
@@ -27,7 +28,8 @@ double magenta_light(const cv::Vec3b& pixel) {
 // Area of a disc, px2, with the shares of its blurred rim: `inside` and what is around it, in the same box.
 double area_with_rim(const cv::Mat3b& picture, const cv::Mat1b& inside) {
   cv::Mat1b core, around;
-  cv::erode(inside, core, cv::getStructuringElement(cv::MORPH_ELLIPSE, {7, 7}), {-1, -1}, 1, cv::BORDER_CONSTANT, 0);
+  cv::erode(inside, core, cv::getStructuringElement(cv::MORPH_ELLIPSE, {7, 7}), {-1, -1}, 1,
+            cv::BORDER_CONSTANT, 0);
   cv::dilate(inside, around, cv::getStructuringElement(cv::MORPH_ELLIPSE, {9, 9}));
   double full = 0, sum = 0;
   for (int y = 0; y < inside.rows; ++y)
@@ -65,12 +67,14 @@ std::vector<ScaleTarget> find_targets(const cv::Mat3b& picture, cv::Mat1b& mask)
     const cv::Rect wide = cv::Rect(box.x - 6, box.y - 6, box.width + 12, box.height + 12) &
                           cv::Rect(0, 0, picture.cols, picture.rows);
     const double area = area_with_rim(picture(wide), labels(wide) == label);
-    targets.push_back({box.x + shape.x, box.y + shape.y, std::sqrt(4 * area / (std::numbers::pi * tilt)), tilt});
+    targets.push_back(
+        {box.x + shape.x, box.y + shape.y, std::sqrt(4 * area / (std::numbers::pi * tilt)), tilt});
     mask(box).setTo(255, region);
   }
   if (!targets.empty())
     cv::dilate(mask, mask, cv::getStructuringElement(cv::MORPH_ELLIPSE, {9, 9}));  // its blurred rim
-  std::sort(targets.begin(), targets.end(), [](const ScaleTarget& a, const ScaleTarget& b) { return a.y < b.y; });
+  std::sort(targets.begin(), targets.end(),
+            [](const ScaleTarget& a, const ScaleTarget& b) { return a.y < b.y; });
   return targets;
 }
 

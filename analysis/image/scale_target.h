@@ -7,9 +7,9 @@ namespace scree {
 
 /// A disc that was found.
 struct ScaleTarget {
-  double x = 0, y = 0;          ///< px
-  double diameter_px = 0;       ///< the larger axis: a disc seen at an angle keeps it
-  double tilt = 0;              ///< smaller over larger axis
+  double x = 0, y = 0;     ///< px
+  double diameter_px = 0;  ///< the larger axis: a disc seen at an angle keeps it
+  double tilt = 0;         ///< smaller over larger axis
 };
 
 /// Finds magenta discs: red and blue well above green, which neither rock nor plants nor sky have, in sun and
@@ -25,8 +25,9 @@ struct ImageScale {
   double at(double y) const { return at_top + per_row * y; }
 };
 
-/// The scale that targets of `diameter` (m) give: their mean, or, where the highest and the lowest lie at least
-/// a third of the picture's height (`rows`) apart, the straight line of least squares. `targets` not empty.
+/// The scale that targets of `diameter` (m) give: their mean, or, where the highest and the lowest lie at
+/// least a third of the picture's height (`rows`) apart, the straight line of least squares. `targets` not
+/// empty.
 ImageScale scale_of(const std::vector<ScaleTarget>& targets, double diameter, int rows);
 
 }  // namespace scree

@@ -56,7 +56,8 @@ TEST(DrawnShapes, DiscsAreRoundAndSquaresAreNot) {
   EXPECT_NEAR(square.feret_max, 60 * std::sqrt(2.0), 0.02 * 60 * std::sqrt(2.0));
   EXPECT_NEAR(square.feret_min, 60, 0.5);
   EXPECT_NEAR(square.roundness(), 4 * 3600 / (pi * 7200), 0.02);
-  EXPECT_NEAR(square.circularity(), pi / 4, 0.08);  // four directions of Crofton's formula see a square's length to 5 %
+  EXPECT_NEAR(square.circularity(), pi / 4,
+              0.08);  // four directions of Crofton's formula see a square's length to 5 %
 }
 
 TEST(DrawnShapes, OnePixelHasASize) {

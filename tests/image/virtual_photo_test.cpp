@@ -14,16 +14,19 @@
 namespace scree {
 namespace {
 
-// CM0's middle, between 0.12 and 0.8 m: the few largest blocks of the whole grading would decide over a picture
-// as small as these.
-Grading rock() { return read_grading(SCREE_TEST_ASSETS "/gradings/CM0.csv").scalped(0.12, 0.8); }
+// CM0's middle, between 0.12 and 0.8 m: the few largest blocks of the whole grading would decide over a
+// picture as small as these.
+Grading rock() {
+  return read_grading(SCREE_TEST_ASSETS "/gradings/CM0.csv").scalped(0.12, 0.8);
+}
 
 struct Sun {
   double azimuth, elevation;
 };
 constexpr Sun kSuns[] = {{90, 80}, {135, 60}, {20, 40}};
 
-Photo photo_of(GrainLayout layout, double coverage, const Sun& sun, std::uint64_t seed = 7, double segregation = 0.6) {
+Photo photo_of(GrainLayout layout, double coverage, const Sun& sun, std::uint64_t seed = 7,
+               double segregation = 0.6) {
   SceneSettings scene;
   scene.layout = layout;
   scene.coverage = coverage;
@@ -65,7 +68,8 @@ TEST_P(Chain, FindsTheGradingInEveryLight) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(VirtualPhotos, Chain,
-                         testing::Values(Case{GrainLayout::apart, 0.35, 0.10}, Case{GrainLayout::touching, 0.5, 0.15},
+                         testing::Values(Case{GrainLayout::apart, 0.35, 0.10},
+                                         Case{GrainLayout::touching, 0.5, 0.15},
                                          Case{GrainLayout::overlapping, 0.9, 0.25}));
 
 TEST(VirtualPhoto, IsTheSameEveryTimeAndForAnyNumberOfThreads) {
@@ -194,7 +198,8 @@ TEST(Scene, FollowsItsGradingAndLiesApart) {
     masses.push_back(grain.mass);
   }
   const PassingCurve curve(diameters, masses);
-  for (const Grading::Point& point : rock().points()) EXPECT_NEAR(curve.passing(point.diameter), point.passing, 0.06);
+  for (const Grading::Point& point : rock().points())
+    EXPECT_NEAR(curve.passing(point.diameter), point.passing, 0.06);
   double nearest = 1e9;
   for (std::size_t i = 0; i < scene.grains.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
@@ -213,7 +218,8 @@ TEST(Scene, RefusesWhatDoesNotFit) {
 }
 
 TEST(Scene, OfAPileIsSeenFromTheToe) {
-  // Two balls on a slope of 45 degrees towards +x; one stands at +y, which is on the right of who looks up it.
+  // Two balls on a slope of 45 degrees towards +x; one stands at +y, which is on the right of who looks up
+  // it.
   std::vector<Grain> pile(2);
   pile[0] = {.id = 1, .position = {0, 0, 10}, .diameter = 1, .mass = 1};
   pile[1] = {.id = 2, .position = {5, 3, 5}, .diameter = 1, .mass = 1};
