@@ -115,12 +115,12 @@ void print_check(const scree::TruthCheck& check) {
       worst = std::fmax(worst, std::isfinite(check.measured[k].chi)
                                    ? std::abs(check.measured[k].chi - check.known[k].chi)
                                    : INFINITY);
+  const double known = check.known[0].d50, measured = check.measured[0].d50;
   fmt::print(
-      "known rock: D50 {:.1f} cm of what can be seen, measured {:+.1f} % off; {:.1f} cm of all rock, {:+.1f} "
-      "% off; "
-      "largest error of chi {:.2f}\n",
-      100 * check.known[0].d50, 100 * (check.measured[0].d50 / check.known[0].d50 - 1), 100 * check.scene_d50,
-      100 * (check.measured[0].d50 / check.scene_d50 - 1), worst);
+      "known rock: D50 {:.1f} cm of what can be seen, measured {:+.1f} % off (perfect outlines {:+.1f} %)\n",
+      100 * known, 100 * (measured / known - 1), 100 * (check.ideal[0].d50 / known - 1));
+  fmt::print("            D50 {:.1f} cm of all rock, measured {:+.1f} % off; largest error of chi {:.2f}\n",
+             100 * check.scene_d50, 100 * (measured / check.scene_d50 - 1), worst);
 }
 
 void print_bias(const scree::ImageBias& bias) {

@@ -185,8 +185,8 @@ Labels settle_borders(const Labels& labels, const cv::Mat1b& grey, const cv::Mat
           const int ny = y + dy, nx = x + dx;
           inside = ny < 0 || nx < 0 || ny >= basins.rows || nx >= basins.cols || labels.of(ny, nx) == label;
         }
-      // The smallest grains are hardly more than their rims.
-      if (inside || radius[label] < 3) basins(y, x) = label + 1;
+      // What is nowhere three pixels wide, a sliver between an edge and the rim, goes to its neighbours.
+      if (inside) basins(y, x) = label + 1;
     }
   // Steps stay, noise within a grain does not: it would let any basin through.
   cv::Mat1b smooth;

@@ -20,8 +20,9 @@ Labels split_grains(const cv::Mat1b& rock, const cv::Mat1b& edges, double neck);
 /// Moves the borders of grains to the steps of brightness near them: a watershed of the grey picture from the
 /// insides of the grains and from what is surely none (Meyer & Beucher, J. Vis. Commun. Image Represent. 1
 /// (1990) 21). A grain's side that the sun does not reach is as dark as lit ground, so a threshold cuts it
-/// off; its brightness falls smoothly to there, and steps down to the shadow that it throws. `reach`: how far
-/// a border may move outwards, in radii of the grain.
+/// off; its brightness falls smoothly to there, and steps down to the shadow that it throws. What is nowhere
+/// three pixels wide goes to its neighbours. `reach`: how far a border may move outwards, in radii of the
+/// grain.
 Labels settle_borders(const Labels& labels, const cv::Mat1b& grey, const cv::Mat1b& ignore, double reach);
 
 }  // namespace scree

@@ -121,12 +121,13 @@ std::string check_table(const TruthCheck& check) {
         decimals_text(100 * (measured.d50 / known.d50 - 1), 1), decimals_text(known.chi, 2),
         decimals_text(measured.chi, 2), decimals_text(measured.chi - known.chi, 2));
   }
-  return out +
-         fmt::format(
-             "</tbody></table></div>\n<p>D50 of all rock of the scene, hidden rock too: {} cm; measured {} % "
-             "off.</p>\n",
-             number_text(100 * check.scene_d50),
-             decimals_text(100 * (check.measured[0].d50 / check.scene_d50 - 1), 1));
+  return out + fmt::format(
+                   "</tbody></table></div>\n<p>Perfect outlines of what can be seen would give D50 {} cm: "
+                   "what lies on "
+                   "rock hides a part of it. D50 of all rock of the scene, hidden rock too: {} cm; measured "
+                   "{} % off.</p>\n",
+                   number_text(100 * check.ideal[0].d50), number_text(100 * check.scene_d50),
+                   decimals_text(100 * (check.measured[0].d50 / check.scene_d50 - 1), 1));
 }
 
 std::string bias_words(const ImageBias& bias) {
