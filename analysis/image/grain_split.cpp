@@ -163,6 +163,7 @@ Labels split_grains(const cv::Mat1b& rock, const cv::Mat1b& edges, double neck) 
 }
 
 Labels settle_borders(const Labels& labels, const cv::Mat1b& grey, const cv::Mat1b& ignore, double reach) {
+  if (labels.count == 0) return labels;
   std::vector<double> radius(labels.count + 1, 0);
   for (int y = 0; y < labels.of.rows; ++y)
     for (int x = 0; x < labels.of.cols; ++x) ++radius[labels.of(y, x)];
