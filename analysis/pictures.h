@@ -13,7 +13,7 @@ namespace scree {
 /// A picture on disk and what a reader needs beside it.
 struct Picture {
   std::string title;
-  std::filesystem::path file;  ///< .png or .svg
+  std::filesystem::path file;  ///< .png, .jpg or .svg
   std::string caption;         ///< one sentence
 };
 

@@ -157,11 +157,12 @@ std::string figure(const Picture& picture) {
   std::ifstream in(picture.file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   const bool svg = picture.file.extension() == ".svg";
+  const char* kind = svg ? "svg+xml" : picture.file.extension() == ".jpg" ? "jpeg" : "png";
   return fmt::format(
       "<figure{}><img alt=\"{}\" src=\"data:image/{};base64,{}\"><figcaption><b>{}.</b> "
       "{}</figcaption></figure>\n",
-      svg ? " class=\"chart\"" : "", html_escaped(picture.title + ". " + picture.caption),
-      svg ? "svg+xml" : "png", base64(bytes), html_escaped(picture.title), html_escaped(picture.caption));
+      svg ? " class=\"chart\"" : "", html_escaped(picture.title + ". " + picture.caption), kind,
+      base64(bytes), html_escaped(picture.title), html_escaped(picture.caption));
 }
 
 std::string figures(const char* heading, const std::vector<Picture>& pictures) {

@@ -9,6 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/field.h"
+#include "cli/picture_options.h"
 #include "scree_version.h"
 #include "sim/material/input_bytes.h"
 
@@ -33,6 +34,7 @@ Examples:
   scree compare runs/canadian_malartic_10m               the comparison of a run, as a table
   scree field --thesis                                   gradings of slopes in pictures: statistics, fines, conductivity
   scree analyse heap.csv --scenario scenarios/repose_lab.yaml   what a pile of another program gives
+  scree image slope.jpg --scale 1.2cm/px                 gradings of a photographed slope
   scree diagnose data.yaml --model model.yaml            which effect the model lacks, if any
   scree validate scenarios/a1_10m.yaml                   check a file without running it
   scree effects breakage                                 an effect that a scenario can switch on
@@ -324,6 +326,115 @@ int main(int argc, char** argv) {
       "\nExamples:\n  scree effects\n  scree effects cohesion\n"
       "  scree run scenarios/repose_lab_coarse.yaml --set effects.cohesion.bond_number=0.5\n");
 
+  ImageOptions image;
+  CLI::App* image_app =
+      app.add_subcommand("image", "Photographs of a slope: grains, and the grading of every section");
+  image_app->add_option("photos", image.photos, "PNG or JPEG, one a slope or a repeat")->required();
+  image_app->add_option("--scale", image.scale,
+                        "Length of a pixel, like 1.2cm/px; default: from magenta discs in the picture");
+  image_app->add_option("--target-diameter", image.target_diameter, "Of the discs")->capture_default_str();
+  image_app->add_option("--sections", image.sections, "Equal parts of the slope, S1 at the top")
+      ->check(CLI::Range(1, 50))
+      ->capture_default_str();
+  image_app->add_option(
+      "--region", image.region,
+      "The slope in pixels, \"x,y x,y x,y\", or two opposite corners; default: the whole picture");
+  image_app->add_option("--model", image.model, "How an outline becomes a body: sphere, ellipsoid or feret")
+      ->check(CLI::IsMember({"sphere", "ellipsoid", "feret"}))
+      ->capture_default_str();
+  auto* shape_factor = image_app
+                           ->add_option("--shape-factor", image.shape_factor,
+                                        "lambda = c/b of ellipsoid and feret; default: 0.53")
+                           ->check(CLI::Range(0.05, 1.0));
+  image_app
+      ->add_option("--weighed", image.weighed,
+                   "Find lambda first, from photographs of weighed rock: CSV photo,mass_kg")
+      ->excludes(shape_factor);
+  image_app
+      ->add_option("--detection-limit", image.detection_limit_cm2, "Smallest outline that is counted, cm2")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->capture_default_str();
+  image_app->add_option("--density", image.density, "Of the rock, kg/m3")
+      ->check(CLI::Range(500.0, 10000.0))
+      ->capture_default_str();
+  image_app->add_option("--threshold", image.threshold, "otsu, or local where the light is uneven")
+      ->check(CLI::IsMember({"otsu", "local"}))
+      ->capture_default_str();
+  image_app
+      ->add_option("--neck", image.neck,
+                   "Two parts are one grain if the neck between them is at least this share of the width of "
+                   "the smaller")
+      ->check(CLI::Range(0.05, 1.0))
+      ->capture_default_str();
+  image_app->add_flag("--no-edges", image.no_edges, "Steps of brightness within rock do not separate grains");
+  image_app->add_option("--truth", image.truth,
+                        "What scree render wrote about each photograph: errors, and the bias against size");
+  image_app->add_option("--scenario", image.scenario,
+                        "Scenario that simulates the slope: writes a dataset, and the bias on top of it");
+  image_app
+      ->add_option("--relative-uncertainty", image.relative_uncertainty,
+                   "Standard uncertainty in the dataset of values from one photograph, as a share of them")
+      ->check(CLI::PositiveNumber);
+  image_app->add_option("--out", image.out, "Folder for the results; default: a free runs/image");
+  image_app->add_flag("--force", image.force, "Write into --out even if it holds something");
+  image_app->footer(
+      "\nExamples:\n  scree image slope.jpg --scale 1.2cm/px --sections 6\n"
+      "  scree image slope1.jpg slope2.jpg --target-diameter 50cm --scenario "
+      "scenarios/canadian_malartic_10m.yaml\n");
+
+  RenderOptions render;
+  CLI::App* render_app =
+      app.add_subcommand("render", "A virtual photograph of known rock, to test what `image` makes of it");
+  render_app->add_option("out", render.out, "Picture, .png or .jpg; its truth lies beside it, .truth.csv")
+      ->required();
+  render_app->add_option("--layout", render.layout, "How grains lie: apart, touching or overlapping")
+      ->check(CLI::IsMember({"apart", "touching", "overlapping"}))
+      ->capture_default_str();
+  render_app->add_option("--grading", render.grading, "Grading: a file, or a name in assets/gradings")
+      ->capture_default_str();
+  auto* snapshot =
+      render_app->add_option("--snapshot", render.snapshot,
+                             "Instead: a pile dumped towards +x, of a run (particles.h5) or any snapshot");
+  render_app
+      ->add_option(
+          "--slope", render.slope,
+          "Angle of the pile's slope, degrees, at right angles to which it is seen; default: its own")
+      ->check(CLI::Range(0.0, 90.0))
+      ->needs(snapshot);
+  render_app
+      ->add_option("--pixels", render.pixels, "Size of the picture; that of a pile follows from the scale")
+      ->capture_default_str();
+  render_app->add_option("--scale", render.scale, "Length of a pixel")->capture_default_str();
+  render_app
+      ->add_option("--coverage", render.coverage,
+                   "Area of all outlines over the picture's; default: 0.35, 0.5, 1.5")
+      ->check(CLI::Range(0.01, 5.0));
+  render_app
+      ->add_option("--segregation", render.segregation, "How much coarser the foot is than the top, -1 to 1")
+      ->check(CLI::Range(-1.0, 1.0))
+      ->capture_default_str();
+  render_app->add_option("--sun", render.sun, "Azimuth (0 right, 90 top) and elevation, degrees")
+      ->capture_default_str();
+  render_app->add_option("--ambient", render.ambient, "Share of the light that shadows get")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  render_app->add_option("--texture", render.texture, "Deviation of brightness within a grain")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  render_app->add_option("--blur", render.blur, "Standard deviation of the lens's blur, px")
+      ->check(CLI::Range(0.0, 20.0))
+      ->capture_default_str();
+  render_app->add_option("--noise", render.noise, "Standard deviation of the sensor's noise, share of white")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  render_app->add_option("--target-diameter", render.target_diameter, "Of the magenta disc, or none")
+      ->capture_default_str();
+  render_app->add_option("--seed", render.seed, "Of places, texture and noise")->capture_default_str();
+  render_app->add_flag("--force", render.force, "Write over files that are there");
+  render_app->footer(
+      "\nExamples:\n  scree render slope.png --layout touching --sun 135,40\n"
+      "  scree render pile.png --snapshot runs/quick_dump/seed_1/particles.h5\n");
+
   CLI::App* schema_app = app.add_subcommand("schema", "Print the JSON Schema of scenario files");
 
   try {
@@ -332,10 +443,10 @@ int main(int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error);
     const bool names_one = argc > 1 && argv[1][0] != '-';
     if (names_one && app.get_subcommands().empty()) {
-      fmt::print(stderr,
-                 "scree: {}: no such subcommand; there are run, sweep, reproduce, study, calibrate, predict, "
-                 "compare, analyse, field, diagnose, twin, validate, effects and schema\n",
-                 scree::one_line(argv[1]));
+      std::vector<std::string> names;
+      for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+      fmt::print(stderr, "scree: {}: no such subcommand; there are {}\n", scree::one_line(argv[1]),
+                 fmt::join(names, ", "));
       return kBadInput;
     }
     fmt::print(stderr, "scree: {} (see scree --help)\n", scree::one_line(error.what()));
@@ -360,6 +471,8 @@ int main(int argc, char** argv) {
     if (*diagnose_app) return run_diagnose(diagnose);
     if (*twin_app) return run_twin(twin);
 
+    if (*image_app) return run_image(image);
+    if (*render_app) return run_render(render);
     if (*effects_app) return run_effects(effects);
     if (*schema_app) return run_schema();
   } catch (const std::bad_alloc&) {

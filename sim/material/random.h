@@ -11,7 +11,8 @@ enum class RandomPurpose : std::uint64_t {
   base_layer = 3,
   measurement = 4,
   design = 5,
-  fragments = 6
+  fragments = 6,
+  picture = 7
 };
 
 /// Counter-based generator (SplitMix64 finaliser over key and counter; Steele, Lea & Flood, OOPSLA 2014).

@@ -1,0 +1,193 @@
+// Pictures as files, good and bad, through the program as a user calls it.
+#include "analysis/image/picture_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgproc.hpp>
+
+#include "analysis/image/scale_target.h"
+#include "sim/io/input_text.h"
+#include "tests/cli/call.h"
+
+namespace scree {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::string_literals;
+using testing::HasSubstr;
+
+class PictureFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() /
+              ("scree_picture_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  fs::path write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+    return folder_ / name;
+  }
+  // One line that names the file, exit code 2, nothing written.
+  void expect_refused(const fs::path& file, const std::string& words, const std::string& options = "") const {
+    const fs::path out = folder_ / "out";
+    const Called called =
+        call("image " + file.string() + " --scale 1cm/px --out " + out.string() + " " + options);
+    EXPECT_EQ(called.code, 2) << called.text;
+    EXPECT_THAT(called.text, HasSubstr(words));
+    EXPECT_EQ(std::count(called.text.begin(), called.text.end(), '\n'), 1) << called.text;
+    EXPECT_FALSE(fs::exists(out));
+  }
+  fs::path folder_;
+};
+
+// The head of a PNG of any size; nothing of its pixels.
+std::string png_head(unsigned width, unsigned height) {
+  std::string bytes = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR"s;
+  for (const unsigned value : {width, height})
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xff);
+  return bytes + "\x08\x02\0\0\0"s + "0000" + "\0\0\0\0IEND\xae\x42\x60\x82"s;
+}
+
+cv::Mat3b grey_with_discs() {
+  cv::Mat3b picture(300, 400, cv::Vec3b(60, 60, 60));
+  for (int k = 0; k < 8; ++k)
+    cv::circle(picture, {40 + 45 * k, 60 + 25 * k}, 14 + k, cv::Scalar(190, 190, 190), cv::FILLED);
+  return picture;
+}
+
+TEST_F(PictureFile, WhatIsNoPictureIsRefused) {
+  expect_refused(write("text.png", "x,y\n1,2\n"), "is no PNG or JPEG");
+  expect_refused(write("empty.png", ""), "empty.png");
+  expect_refused(folder_ / "nowhere.png", "nowhere.png");
+  expect_refused(write("zero.png", png_head(0, 0)), "has 0 x 0 pixels");
+  expect_refused(write("head.png", "\x89PNG\r\n\x1a\n\0\0"s), "cut off");
+  // libpng may say more on a line of its own.
+  const Called damaged = call("image " + write("pixels.png", png_head(20, 20)).string() + " --scale 1cm/px");
+  EXPECT_EQ(damaged.code, 2);
+  EXPECT_THAT(damaged.text, HasSubstr("pixels.png: is damaged"));
+  expect_refused(write("jpeg.jpg", "\xff\xd8\xff\xe0\0\x10JFIF"s), "cut off");
+}
+
+TEST_F(PictureFile, HugePicturesAreRefusedBeforeTheyAreUnpacked) {
+  expect_refused(write("huge.png", png_head(30000, 30000)), "at most 64 megapixels");
+  expect_refused(write("wide.png", png_head(0x7fffffff, 0x7fffffff)), "at most 64 megapixels");
+}
+
+TEST_F(PictureFile, DarknessAndBareGroundAreRefused) {
+  write_picture(folder_ / "black.png", cv::Mat3b(200, 200, cv::Vec3b(0, 0, 0)));
+  expect_refused(folder_ / "black.png", "shows nothing");
+  // A step of brightness from side to side: an outline, but one that the frame cuts.
+  cv::Mat3b half(200, 200, cv::Vec3b(40, 40, 40));
+  half(cv::Rect(0, 0, 200, 100)).setTo(cv::Scalar(200, 200, 200));
+  write_picture(folder_ / "half.png", half);
+  expect_refused(folder_ / "half.png", "no grain above the detection limit");
+}
+
+TEST_F(PictureFile, AMissingScaleSaysWhatToDo) {
+  write_picture(folder_ / "discs.png", grey_with_discs());
+  const Called called =
+      call("image " + (folder_ / "discs.png").string() + " --out " + (folder_ / "out").string());
+  EXPECT_EQ(called.code, 2);
+  EXPECT_THAT(called.text, HasSubstr("no scale target is found"));
+  EXPECT_THAT(called.text, HasSubstr("--scale 1.2cm/px"));
+}
+
+TEST_F(PictureFile, WrongOptionsAreNamed) {
+  write_picture(folder_ / "discs.png", grey_with_discs());
+  expect_refused(folder_ / "discs.png", "--region 5", "--region 5");
+  expect_refused(folder_ / "discs.png", "the region has", "--region \"900,900 950,990\"");
+  expect_refused(folder_ / "discs.png", "--truth: 2 files for 1", "--truth a.csv b.csv");
+  const Called scale = call("image " + (folder_ / "discs.png").string() + " --scale 1.2cm");
+  EXPECT_EQ(scale.code, 2);
+  EXPECT_THAT(scale.text, HasSubstr("--scale 1.2cm: a length a pixel"));
+}
+
+TEST_F(PictureFile, DiscsOfKnownSizeComeOutAsTheyAre) {
+  write_picture(folder_ / "discs.png", grey_with_discs());
+  const fs::path out = folder_ / "out";
+  const Called called = call("image " + (folder_ / "discs.png").string() +
+                             " --scale 1cm/px --sections 2 --out " + out.string());
+  ASSERT_EQ(called.code, 0) << called.text;
+  EXPECT_THAT(called.text, HasSubstr("8 grains"));
+  for (const char* name :
+       {"report.html", "overlay_discs.jpg", "grains.csv", "gradings.csv", "models.csv", "passing.csv"})
+    EXPECT_TRUE(fs::file_size(out / name) > 100) << name;
+  DelimitedTable grains(out / "grains.csv");
+  const auto a = grains.column("a_m"), x = grains.column("x_px");
+  int n = 0;
+  for (; grains.next(); ++n) {
+    const double k = std::round((*grains.number(*x) - 40) / 45);
+    EXPECT_NEAR(*grains.number(*a), 0.01 * (2 * (14 + k) + 1), 0.01);
+  }
+  EXPECT_EQ(n, 8);
+  EXPECT_THAT(slurp(out / "gradings.csv"), HasSubstr("image,section,d100_cm,d95_cm"));
+}
+
+TEST_F(PictureFile, ExifTurnsAPhotographUpright) {
+  // 60 wide and 40 high with a bright left half; orientation 6: to be turned by 90 degrees clockwise.
+  cv::Mat3b picture(40, 60, cv::Vec3b(10, 10, 10));
+  picture(cv::Rect(0, 0, 30, 40)).setTo(cv::Scalar(240, 240, 240));
+  write_picture(folder_ / "plain.jpg", picture);
+  std::string bytes = slurp(folder_ / "plain.jpg");
+  const std::string tiff = "MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0"s;
+  const std::string app1 = "\xff\xe1\0"s + static_cast<char>(tiff.size() + 8) + "Exif\0\0"s + tiff;
+  bytes.insert(2, app1);
+  const cv::Mat3b turned = read_photograph(write("turned.jpg", bytes));
+  ASSERT_EQ(turned.cols, 40);
+  ASSERT_EQ(turned.rows, 60);
+  EXPECT_GT(turned(5, 20)[0], 200);  // the left side is at the top now
+  EXPECT_LT(turned(55, 20)[0], 60);
+}
+
+TEST_F(PictureFile, CutOffPhotographsAreRefused) {
+  write_picture(folder_ / "discs.jpg", grey_with_discs());
+  const std::string bytes = slurp(folder_ / "discs.jpg");
+  expect_refused(write("half.jpg", bytes.substr(0, bytes.size() / 2)), "cut off");
+  write_picture(folder_ / "discs.png", grey_with_discs());
+  const std::string png = slurp(folder_ / "discs.png");
+  expect_refused(write("half.png", png.substr(0, png.size() / 2)), "cut off");
+}
+
+TEST_F(PictureFile, RenderAndImageWorkTogether) {
+  const std::string photo = (folder_ / "a.png").string();
+  const Called made = call("render " + photo +
+                           " --pixels 700x500 --grading " SCREE_TEST_ASSETS
+                           "/gradings/Lab0.csv --scale 1mm/px "
+                           "--target-diameter 40mm --coverage 0.2");
+  ASSERT_EQ(made.code, 0) << made.text;
+  EXPECT_EQ(call("render " + photo).code, 2);  // is there already
+  const Called seen =
+      call("image " + photo +
+           " --target-diameter 40mm --detection-limit 0.3 --model sphere --sections 2 --truth " +
+           (folder_ / "a.truth.csv").string() + " --out " + (folder_ / "out").string());
+  ASSERT_EQ(seen.code, 0) << seen.text;
+  EXPECT_THAT(seen.text, HasSubstr("known rock: D50"));
+  EXPECT_THAT(slurp(folder_ / "out" / "effects.yaml"), HasSubstr("image_blur:"));
+  EXPECT_THAT(slurp(folder_ / "out" / "bias.csv"), HasSubstr("detected_share"));
+}
+
+TEST(ScaleTarget, IsFoundInSunAndShadowAndNowhereElse) {
+  cv::Mat3b picture(400, 300, cv::Vec3b(90, 95, 100));
+  cv::circle(picture, {60, 40}, 20, cv::Scalar(200, 40, 210), cv::FILLED, cv::LINE_AA);
+  cv::circle(picture, {200, 350}, 25, cv::Scalar(80, 14, 84), cv::FILLED, cv::LINE_AA);
+  cv::circle(picture, {150, 200}, 25, cv::Scalar(40, 40, 210), cv::FILLED);              // red
+  cv::rectangle(picture, {230, 100}, {240, 180}, cv::Scalar(200, 40, 210), cv::FILLED);  // no disc
+  cv::Mat1b mask;
+  const std::vector<ScaleTarget> targets = find_targets(picture, mask);
+  ASSERT_EQ(targets.size(), 2u);
+  EXPECT_NEAR(targets[0].x, 60, 0.5);
+  EXPECT_NEAR(targets[0].diameter_px, 41, 0.8);
+  EXPECT_NEAR(targets[1].diameter_px, 51, 0.8);
+  // Discs of the same size that look larger at the foot: the foot is nearer, a pixel is less there.
+  const ImageScale scale = scale_of(targets, 0.5, 400);
+  EXPECT_NEAR(scale.at(40), 0.5 / targets[0].diameter_px, 1e-9);
+  EXPECT_NEAR(scale.at(350), 0.5 / targets[1].diameter_px, 1e-9);
+}
+
+}  // namespace
+}  // namespace scree

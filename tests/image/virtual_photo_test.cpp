@@ -1,0 +1,235 @@
+// The whole chain on virtual photographs, whose truth is known.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <opencv2/core.hpp>
+
+#include "analysis/image/image_bias.h"
+#include "analysis/image/render_photo.h"
+#include "sim/io/input_text.h"
+#include "sim/material/random.h"
+
+namespace scree {
+namespace {
+
+// CM0's middle, between 0.12 and 0.8 m: the few largest blocks of the whole grading would decide over a
+// picture as small as these.
+Grading rock() {
+  return read_grading(SCREE_TEST_ASSETS "/gradings/CM0.csv").scalped(0.12, 0.8);
+}
+
+struct Sun {
+  double azimuth, elevation;
+};
+constexpr Sun kSuns[] = {{90, 80}, {135, 60}, {20, 40}};
+
+Photo photo_of(GrainLayout layout, double coverage, const Sun& sun, std::uint64_t seed = 7,
+               double segregation = 0.6) {
+  SceneSettings scene;
+  scene.layout = layout;
+  scene.coverage = coverage;
+  scene.segregation = segregation;
+  scene.target_margin = 0.65;
+  scene.seed = seed;
+  PhotoSettings photo;
+  photo.sun_azimuth_deg = sun.azimuth;
+  photo.sun_elevation_deg = sun.elevation;
+  return render_photo(make_scene(rock(), scene), photo);
+}
+
+// The rock is spheres.
+PhotoAnalysisSettings for_spheres() {
+  PhotoAnalysisSettings settings;
+  settings.model = SizeModel::sphere;
+  return settings;
+}
+
+struct Case {
+  GrainLayout layout;
+  double coverage, allowed;  // error of D50
+};
+
+class Chain : public testing::TestWithParam<Case> {};
+
+TEST_P(Chain, FindsTheGradingInEveryLight) {
+  const auto [layout, coverage, allowed] = GetParam();
+  for (const Sun& sun : kSuns) {
+    SCOPED_TRACE(testing::Message() << "sun " << sun.azimuth << ", " << sun.elevation);
+    const Photo photo = photo_of(layout, coverage, sun);
+    const PhotoAnalysis found = analyse_photo(photo.picture, for_spheres());
+    EXPECT_NEAR(found.scale.at(0), 0.012, 0.01 * 0.012);
+    const TruthCheck check = check_against_truth(found, photo.truth, for_spheres());
+    EXPECT_NEAR(check.measured[0].d50 / check.known[0].d50, 1, allowed);
+    if (layout != GrainLayout::apart) continue;
+    for (std::size_t k = 1; k < check.known.size(); ++k)
+      EXPECT_NEAR(check.measured[k].chi, check.known[k].chi, 0.15) << "S" << k;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(VirtualPhotos, Chain,
+                         testing::Values(Case{GrainLayout::apart, 0.35, 0.10},
+                                         Case{GrainLayout::touching, 0.5, 0.15},
+                                         Case{GrainLayout::overlapping, 0.9, 0.25}));
+
+TEST(VirtualPhoto, IsTheSameEveryTimeAndForAnyNumberOfThreads) {
+  const Photo first = photo_of(GrainLayout::touching, 0.4, kSuns[1]);
+  const Photo again = photo_of(GrainLayout::touching, 0.4, kSuns[1]);
+  EXPECT_EQ(cv::norm(first.picture, again.picture, cv::NORM_INF), 0);
+  const int threads = cv::getNumThreads();
+  std::vector<PhotoAnalysis> found;
+  for (const int n : {1, 2, 7}) {
+    cv::setNumThreads(n);
+    found.push_back(analyse_photo(first.picture, for_spheres()));
+  }
+  cv::setNumThreads(threads);
+  for (const PhotoAnalysis& other : found) {
+    ASSERT_EQ(other.grains.size(), found[0].grains.size());
+    for (std::size_t i = 0; i < other.grains.size(); ++i)
+      EXPECT_EQ(other.grains[i].size[0].mass, found[0].grains[i].size[0].mass);
+  }
+}
+
+TEST(VirtualPhoto, ShadowsFallAwayFromTheSun) {
+  RockScene scene{4, 4, {}, {}};
+  scene.grains.push_back({.id = 1, .position = {2, 2, 0.5}, .diameter = 1, .mass = 1});
+  PhotoSettings settings;
+  settings.target_diameter = 0;
+  settings.noise = settings.texture = 0;
+  settings.sun_azimuth_deg = 0;  // from the right
+  settings.sun_elevation_deg = 45;
+  const cv::Mat3b picture = render_photo(scene, settings).picture;
+  const auto grey = [&](double x, double y) {
+    return picture(static_cast<int>(y / settings.m_per_px), static_cast<int>(x / settings.m_per_px))[1];
+  };
+  // The ball of radius 0.5 throws its shadow to x = 2 - 0.5 - 0.5 sqrt 2 at 45 degrees.
+  EXPECT_LT(grey(1.4, 2), 0.8 * grey(2.6, 2));
+  EXPECT_EQ(grey(0.5, 2), grey(3.5, 2));  // open ground
+  EXPECT_GT(grey(2.3, 2), grey(1.7, 2));  // its lit side
+}
+
+TEST(VirtualPhoto, TruthSurvivesItsFile) {
+  const Photo photo = photo_of(GrainLayout::overlapping, 0.6, kSuns[0]);
+  const auto file = std::filesystem::temp_directory_path() / "scree_photo_truth_test.csv";
+  std::ofstream(file) << truth_csv(photo.truth);
+  const PhotoTruth read = read_truth(file);
+  ASSERT_EQ(read.grains.size(), photo.truth.grains.size());
+  EXPECT_NEAR(read.m_per_px, photo.truth.m_per_px, 1e-9);
+  EXPECT_NEAR(read.scene_d50, photo.truth.scene_d50, 1e-6);
+  EXPECT_NEAR(read.grains[5].diameter, photo.truth.grains[5].diameter, 1e-5);
+  EXPECT_NEAR(read.grains[5].visible_share, photo.truth.grains[5].visible_share, 1e-3);
+  std::ofstream(file) << "id,x_px\n1,2\n";
+  EXPECT_THROW(read_truth(file), FileError);
+  std::filesystem::remove(file);
+}
+
+TEST(VirtualPhoto, VisibleSharesAreThoseOfTheScene) {
+  // A ball of 1 m over a ball of 1 m half a metre aside hides what two discs share:
+  // 2 r^2 acos(s / 2r) - s/2 sqrt(4 r^2 - s^2).
+  RockScene scene{4, 4, {}, {}};
+  scene.grains.push_back({.id = 1, .position = {1.5, 2, 0.5}, .diameter = 1, .mass = 1});
+  scene.grains.push_back({.id = 2, .position = {2.0, 2, 3.0}, .diameter = 1, .mass = 1});
+  PhotoSettings settings;
+  settings.m_per_px = 0.004;
+  settings.target_diameter = 0;
+  const PhotoTruth truth = render_photo(scene, settings).truth;
+  const double lens = 2 * 0.25 * std::acos(0.5) - 0.25 * std::sqrt(1 - 0.25), disc = M_PI / 4;
+  ASSERT_EQ(truth.grains.size(), 2u);
+  EXPECT_NEAR(truth.grains[0].visible_share, 1 - lens / disc, 0.01);
+  EXPECT_NEAR(truth.grains[1].visible_share, 1, 0.01);
+  EXPECT_NEAR(truth.grains[1].x * settings.m_per_px, 2.0, 0.01);
+}
+
+TEST(ImageBias, RecoversALimitAndASlopePutIn) {
+  // Outlines made by hand: detected by a step at 0.2 m of steepness 6, measured d^1.1 / 1 m^0.1.
+  PhotoAnalysis found;
+  PhotoTruth truth;
+  truth.m_per_px = 0.01;
+  truth.scene_d50 = 0.5;
+  const int n = 4000;
+  found.labels.of = cv::Mat1i(1, n, 0);
+  Random random(3, 1, RandomPurpose::picture);
+  for (int i = 0; i < n; ++i) {
+    const double d = 0.1 * std::pow(10.0, random.uniform());
+    truth.grains.push_back({i + 1, static_cast<double>(i), 0, d, d * d * d, d * d, 1, d, d});
+    if (random.uniform() > 1 / (1 + std::pow(0.2 / d, 6))) continue;
+    ImageGrain grain;
+    grain.label = i + 1;
+    grain.size[0] = {d * std::pow(d, 0.1), d * d * d};
+    found.labels.of(0, i) = grain.label;
+    found.grains.push_back(grain);
+  }
+  found.labels.count = n;
+  const ImageBias bias = measure_bias({{&found, &truth}}, SizeModel::sphere);
+  EXPECT_NEAR(bias.limit, 0.2, 0.01);
+  EXPECT_NEAR(bias.steepness, 6, 0.6);
+  EXPECT_NEAR(bias.exponent, 0.1, 1e-6);
+  EXPECT_NEAR(bias.width, 0, 1e-6);
+  EXPECT_EQ(bias.matched, static_cast<int>(found.grains.size()));
+}
+
+TEST(ImageBias, OfPerfectDetectionHasNoLimit) {
+  PhotoAnalysis found;
+  PhotoTruth truth;
+  truth.m_per_px = 0.01;
+  truth.scene_d50 = 0.5;
+  found.labels.of = cv::Mat1i(1, 20, 0);
+  for (int i = 0; i < 20; ++i) {
+    const double d = 0.1 + 0.05 * i;
+    truth.grains.push_back({i + 1, static_cast<double>(i), 0, d, d, d, 1, d, d});
+    ImageGrain grain;
+    grain.label = found.labels.of(0, i) = i + 1;
+    grain.size[0] = {d, d};
+    found.grains.push_back(grain);
+  }
+  found.labels.count = 20;
+  const ImageBias bias = measure_bias({{&found, &truth}}, SizeModel::sphere);
+  EXPECT_EQ(bias.limit, 0);
+  EXPECT_NEAR(bias.exponent, 0, 1e-9);
+}
+
+TEST(Scene, FollowsItsGradingAndLiesApart) {
+  SceneSettings settings;
+  settings.coverage = 0.3;
+  const RockScene scene = make_scene(rock(), settings);
+  std::vector<double> diameters, masses;
+  for (const Grain& grain : scene.grains) {
+    diameters.push_back(grain.diameter);
+    masses.push_back(grain.mass);
+  }
+  const PassingCurve curve(diameters, masses);
+  for (const Grading::Point& point : rock().points())
+    EXPECT_NEAR(curve.passing(point.diameter), point.passing, 0.06);
+  double nearest = 1e9;
+  for (std::size_t i = 0; i < scene.grains.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      nearest = std::min(nearest, (scene.grains[i].position - scene.grains[j].position).head<2>().norm() -
+                                      (diameters[i] + diameters[j]) / 2);
+  EXPECT_GE(nearest, 0.05);
+}
+
+TEST(Scene, RefusesWhatDoesNotFit) {
+  SceneSettings settings;
+  settings.width = settings.height = 1;
+  EXPECT_THROW(make_scene(rock(), settings), std::invalid_argument);
+  settings.width = settings.height = 8;
+  settings.coverage = 0.95;  // more than discs apart can cover
+  EXPECT_THROW(make_scene(rock(), settings), std::invalid_argument);
+}
+
+TEST(Scene, OfAPileIsSeenFromTheToe) {
+  // Two balls on a slope of 45 degrees towards +x; one stands at +y, which is on the right of who looks up
+  // it.
+  std::vector<Grain> pile(2);
+  pile[0] = {.id = 1, .position = {0, 0, 10}, .diameter = 1, .mass = 1};
+  pile[1] = {.id = 2, .position = {5, 3, 5}, .diameter = 1, .mass = 1};
+  const RockScene scene = view_of_slope(pile, {}, 45, 1);
+  EXPECT_NEAR(scene.grains[1].position.x() - scene.grains[0].position.x(), 3, 1e-9);
+  EXPECT_NEAR(scene.grains[1].position.y() - scene.grains[0].position.y(), std::sqrt(50.0), 1e-9);
+  EXPECT_NEAR(scene.grains[1].position.z(), scene.grains[0].position.z(), 1e-9);
+  EXPECT_NEAR(scene.grains[0].position.y(), 1.5, 1e-9);  // half a diameter and the margin
+  EXPECT_NEAR(scene.width, 3 + 1 + 2, 1e-9);
+}
+
+}  // namespace
+}  // namespace scree
