@@ -55,6 +55,9 @@ class Sleep {
   std::int64_t asleep() const { return asleep_; }
   /// Those that the last look() put to sleep.
   std::span<const int> fallen_asleep() const { return fallen_asleep_; }
+  /// For saving and going on: world_state.cpp.
+  template <class Stream>
+  void state(Stream& stream);
   /// Bytes held.
   std::size_t bytes() const {
     return window_start_.capacity() * (sizeof(Vec3) + 2 + sizeof(double)) + awake_.capacity() * sizeof(int);
