@@ -58,8 +58,11 @@ std::unique_ptr<scree::CheckpointReader> Checkpoints::open(
 std::unique_ptr<scree::CheckpointReader> Checkpoints::newest(
     const std::function<void(const std::string&)>& warn) const {
   const auto found = checkpoints_in(folder_);
-  for (auto one = found.rbegin(); one != found.rend(); ++one)
+  for (auto one = found.rbegin(); one != found.rend(); ++one) {
     if (auto reader = open(one->second, warn)) return reader;
+    std::error_code ignored;
+    fs::remove(one->second, ignored);  // it must not be one of the two that are kept
+  }
   return nullptr;
 }
 

@@ -17,6 +17,8 @@ struct RunOptions {
   std::filesystem::path out;  ///< empty: runs/NAME
   bool force = false;         ///< write into a folder that is not empty
   bool summary_only = false;  ///< no report, no pictures
+  std::filesystem::path resume;    ///< run folder to go on with; the others but threads are those it began with
+  double checkpoint_minutes = -1;  ///< wall time between checkpoints; 0: none; below: as it began, or the default
 };
 
 struct SweepOptions {
