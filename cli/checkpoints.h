@@ -14,10 +14,9 @@ class Checkpoints {
   Checkpoints(std::filesystem::path folder, scree::CheckpointHeader header, double minutes);
 
   /// The newest checkpoint that is whole, or the outcome of the finished seed (`finished`); null if there is
-  /// none. `warn` hears of those that are damaged; they are taken away. Throws std::runtime_error with what to do when one is of
-  /// another program or scenario.
-  std::unique_ptr<scree::CheckpointReader> newest(
-      const std::function<void(const std::string&)>& warn) const;
+  /// none. `warn` hears of those that are damaged; they are taken away. Throws std::runtime_error with what
+  /// to do when one is of another program or scenario.
+  std::unique_ptr<scree::CheckpointReader> newest(const std::function<void(const std::string&)>& warn) const;
   std::unique_ptr<scree::CheckpointReader> finished(
       const std::function<void(const std::string&)>& warn) const;
 

@@ -85,7 +85,8 @@ int main(int argc, char** argv) {
       "\nExamples:\n  scree run scenarios/quick_dump.yaml\n"
       "  scree run scenarios/a1_10m.yaml --seeds 5 --out runs/a1_five --set experiment.dumps=2\n"
       "  scree run --resume runs/a1_five\n"
-      "\nExit status: 0 done, 1 failed (a seed blew up, disk full, no memory), 2 wrong input, 130 interrupted.\n");
+      "\nExit status: 0 done, 1 failed (a seed blew up, disk full, no memory), 2 wrong input, 130 "
+      "interrupted.\n");
 
   SweepOptions sweep;
   CLI::App* sweep_app = app.add_subcommand("sweep", "Run a scenario over many values of its parameters");

@@ -48,9 +48,9 @@ void ProgressDisplay::draw(bool last) {
   }
   for (const double first : first_share_) before += std::max(first, 0.0) / static_cast<double>(seeds_.size());
   const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  const std::string left =
-      share - before > 0.02 ? "about " + spell_duration(elapsed * (1 - share) / (share - before)) + " left"
-                            : "estimating";
+  const std::string left = share - before > 0.02
+                               ? "about " + spell_duration(elapsed * (1 - share) / (share - before)) + " left"
+                               : "estimating";
   std::string where = shown->dumps > 1
                           ? fmt::format("load {} of {}, {}", shown->dump, shown->dumps, shown->stage)
                           : shown->stage;

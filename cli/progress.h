@@ -20,7 +20,6 @@ class ProgressDisplay {
   /// Ends the bar's line.
   void finish();
 
-
  private:
   void draw(bool last);
   std::vector<std::uint64_t> seeds_;

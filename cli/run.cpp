@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <thread>
@@ -42,6 +43,7 @@ struct Plan {
   fs::path out;
   bool resume = false, summary_only = false;
   RunRecord record;
+  std::unique_ptr<FolderLock> lock;
 };
 
 // False, with messages, if the scenario cannot be run.
@@ -59,6 +61,8 @@ bool check(const scree::ScenarioResult& loaded) {
   return true;
 }
 
+// Both throw std::runtime_error with what to do about it.
+
 std::optional<Plan> plan_new(const RunOptions& options) {
   scree::ScenarioResult loaded = scree::load_scenario(options.file, options.overrides, asset_dir());
   if (!check(loaded)) return std::nullopt;
@@ -66,23 +70,22 @@ std::optional<Plan> plan_new(const RunOptions& options) {
   plan.scenario = std::move(loaded.scenario);
   plan.out = options.out.empty() ? free_run_folder(plan.scenario.name) : options.out;
   if (!prepare_folder(plan.out, options.force)) return std::nullopt;
+  plan.lock = std::make_unique<FolderLock>(plan.out);
   plan.scenario.seeds = chosen_seeds(plan.scenario, options.seeds);
   plan.summary_only = options.summary_only;
-  plan.record = {program_version(),
-                 scenario_hash(plan.scenario),
-                 plan.scenario.name,
-                 plan.scenario.seeds,
-                 plan.summary_only,
-                 options.checkpoint_minutes < 0 ? kCheckpointMinutes : options.checkpoint_minutes};
+  plan.record = {
+      program_version(),  scenario_hash(plan.scenario),
+      plan.scenario.name, plan.scenario.seeds,
+      plan.summary_only,  options.checkpoint_minutes < 0 ? kCheckpointMinutes : options.checkpoint_minutes};
   return plan;
 }
 
-// Throws std::runtime_error with what to do when the folder cannot be resumed.
 std::optional<Plan> plan_resumed(const RunOptions& options) {
   Plan plan;
   plan.resume = true;
   plan.out = options.resume;
   plan.record = read_record(plan.out);
+  plan.lock = std::make_unique<FolderLock>(plan.out);
   const fs::path file = plan.out / "scenario.yaml";
   scree::ScenarioResult loaded = scree::load_scenario(file, {}, asset_dir());
   if (!check(loaded)) return std::nullopt;
@@ -105,9 +108,8 @@ std::optional<Plan> plan_resumed(const RunOptions& options) {
 }
 
 std::optional<Plan> make_plan(const RunOptions& options) {
-  if (options.resume.empty()) return plan_new(options);
   try {
-    return plan_resumed(options);
+    return options.resume.empty() ? plan_new(options) : plan_resumed(options);
   } catch (const std::runtime_error& error) {
     fmt::print(stderr, "scree: {}\n", error.what());
     return std::nullopt;
@@ -135,7 +137,6 @@ int run_run(const RunOptions& options) {
   const Plan& plan = *made;
   const scree::Scenario& scenario = plan.scenario;
   const fs::path& out = plan.out;
-  const FolderLock lock(out);
   const bool checkpoints = plan.record.checkpoint_minutes > 0;
   if (!plan.resume) {
     forget_checkpoints(plan);  // of another run, with --force

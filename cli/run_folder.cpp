@@ -37,12 +37,9 @@ std::string scenario_hash(const scree::Scenario& scenario) {
 }
 
 void write_record(const fs::path& folder, const RunRecord& r) {
-  const nlohmann::ordered_json json = {{"program", r.program},
-                                       {"scenario", r.scenario},
-                                       {"name", r.name},
-                                       {"seeds", r.seeds},
-                                       {"summary_only", r.summary_only},
-                                       {"checkpoint_minutes", r.checkpoint_minutes}};
+  const nlohmann::ordered_json json = {
+      {"program", r.program}, {"scenario", r.scenario},         {"name", r.name},
+      {"seeds", r.seeds},     {"summary_only", r.summary_only}, {"checkpoint_minutes", r.checkpoint_minutes}};
   scree::write_text_file(record_in(folder), json.dump(2) + "\n");
 }
 
@@ -60,8 +57,8 @@ RunRecord read_record(const fs::path& folder) {
     return {json.at("program"), json.at("scenario"),     json.at("name"),
             json.at("seeds"),   json.at("summary_only"), json.at("checkpoint_minutes")};
   } catch (const nlohmann::json::exception&) {
-    throw std::runtime_error(
-        fmt::format("{}: damaged; start anew from scenario.yaml with another --out", record_in(folder).string()));
+    throw std::runtime_error(fmt::format("{}: damaged; start anew from scenario.yaml with another --out",
+                                         record_in(folder).string()));
   }
 }
 
@@ -70,7 +67,8 @@ void remove_record(const fs::path& folder) {
   fs::remove(record_in(folder), ignored);
 }
 
-FolderLock::FolderLock(const fs::path& folder) : file_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+FolderLock::FolderLock(const fs::path& folder)
+    : file_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (file_ < 0 || flock(file_, LOCK_EX | LOCK_NB) == 0) return;  // a file system without locks has none
   const bool taken = errno == EWOULDBLOCK;
   close(file_);

@@ -101,7 +101,9 @@ void simulate(const scree::Scenario& scenario, SeedRun& run, const SeedSettings&
       else
         trajectory.begin(all, fixed);
     };
-    hooks.frame = [&](const scree::Snapshot& snapshot, std::int64_t step) { trajectory.write(snapshot, step); };
+    hooks.frame = [&](const scree::Snapshot& snapshot, std::int64_t step) {
+      trajectory.write(snapshot, step);
+    };
   }
   if (flow) hooks.look = [&](const scree::Snapshot& snapshot) { flow->add(snapshot); };
   hooks.progress = [&](const scree::RunProgress& p) {

@@ -22,7 +22,7 @@ struct SeedRun {
 
 struct SeedSettings {
   int threads = 1;
-  std::filesystem::path folder;       ///< of this seed
+  std::filesystem::path folder;        ///< of this seed
   scree::CheckpointHeader checkpoint;  ///< but for the seed and the time
   double checkpoint_minutes = 0;
   bool resume = false;         ///< go on with what is in the folder

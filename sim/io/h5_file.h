@@ -45,7 +45,8 @@ class QuietHdf5 {
   void* data_ = nullptr;
 };
 
-/// An HDF5 file, new or to be gone on with, that can be taken back to a mark (undo_file.h). Every act throws std::runtime_error with the file's name and the reason when it fails.
+/// An HDF5 file, new or to be gone on with, that can be taken back to a mark (undo_file.h). Every act throws
+/// std::runtime_error with the file's name and the reason when it fails.
 class H5File {
  public:
   /// Shape of a data set, or of one row of it.

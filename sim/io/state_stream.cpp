@@ -16,9 +16,8 @@ void StateReader::section(const std::string& name, std::uint32_t version) {
   if (found != name)
     throw StateError(fmt::format("saved state: section '{}' where '{}' is expected", found, name));
   if (found_version != version)
-    throw StateError(
-        fmt::format("saved state: section '{}' has version {}, this program reads version {}", name,
-                    found_version, version));
+    throw StateError(fmt::format("saved state: section '{}' has version {}, this program reads version {}",
+                                 name, found_version, version));
 }
 
 void StateReader::end_too_early() {

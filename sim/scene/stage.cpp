@@ -136,7 +136,8 @@ void Stage::state(Stream& stream) {
   else
     world_->save_state(stream);
   stream.section("outcome", 1);
-  double wall = wall_before_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  double wall =
+      wall_before_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   stream(outcome_.after_dumps, wall);
   if (Stream::kReads) wall_before_ = wall;
 }

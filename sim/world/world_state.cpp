@@ -1,7 +1,8 @@
 // What of a world goes into a checkpoint: one function a class, which both writes and reads.
 //
 // A new member of a class below that a later step depends on is added to its function here, and the section's
-// version is raised. The assertions at the end fail when a class has grown, so that none is forgotten.
+// version is raised. The test SavedWorlds.HoldEveryMember fails when a class has grown, so that none is
+// forgotten.
 #include <fmt/format.h>
 
 #include "sim/world/rrlinear_world.h"
