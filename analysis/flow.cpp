@@ -8,6 +8,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "sim/io/snapshot_state.h"
+
 namespace scree {
 namespace {
 
@@ -21,6 +23,11 @@ void raise(double& highest, double value) {
 }
 
 }  // namespace
+
+template <class Stream>
+void state(Stream& stream, WeighedValue& value) {
+  stream(value.value, value.mass);
+}
 
 FlowRecorder::FlowRecorder(const FlowSettings& settings) : settings_(settings) {
   check(settings.bench);
@@ -113,6 +120,23 @@ void FlowRecorder::add(const Snapshot& snapshot) {
   keep(std::move(row));
   ++snapshots_;
 }
+
+template <class Stream>
+void FlowRecorder::state(Stream& stream) {
+  stream.section("flow", 1);
+  std::vector<std::int64_t> seen;
+  std::vector<std::uint8_t> came;
+  for (const auto& [id, at_toe] : arrived_) seen.push_back(id);
+  std::sort(seen.begin(), seen.end());
+  for (const std::int64_t id : seen) came.push_back(arrived_.at(id) ? 1 : 0);
+  stream(snapshots_, stride_, last_time_, rows_, highest_mean_, highest_fast_, moved_mass_, moved_moment_,
+         largest_depth_, largest_energy_, liveliest_, seen, came, arrivals_);
+  if (!Stream::kReads) return;
+  arrived_.clear();
+  for (std::size_t k = 0; k < seen.size(); ++k) arrived_.emplace(seen[k], came.at(k) != 0);
+}
+template void FlowRecorder::state(StateWriter&);
+template void FlowRecorder::state(StateReader&);
 
 std::vector<double> FlowRecorder::mean_speed() const {
   std::vector<double> speeds;

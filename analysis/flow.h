@@ -30,6 +30,12 @@ struct FlowRow {
   std::vector<double> fast;   ///< m/s, 95th percentile by mass, in the same way
   double depth = 0;           ///< m, see FlowRecorder
   double kinetic_energy = 0;  ///< J, of all grains below the crest's height
+
+  /// Every member, for checkpoints.
+  template <class Stream>
+  void state(Stream& stream) {
+    stream(time, mean, fast, depth, kinetic_energy);
+  }
 };
 
 /// Rock as it comes to the lowest section for the first time.
@@ -78,6 +84,10 @@ class FlowRecorder {
   /// The snapshot with the largest kinetic energy of the grains below the crest's height; none before rock
   /// moves there.
   const std::optional<Snapshot>& liveliest() const { return liveliest_; }
+
+  /// For checkpoints: everything but the settings, for a StateWriter or a StateReader.
+  template <class Stream>
+  void state(Stream& stream);
 
  private:
   FlowRow look(const Snapshot& snapshot);

@@ -12,11 +12,14 @@ enum ExitCode { kOk = 0, kFailed = 1, kBadInput = 2, kWatchFailed = 3, kInterrup
 struct RunOptions {
   std::filesystem::path file;
   std::vector<std::string> overrides;
-  int seeds = 0;              ///< 0: those of the scenario
-  int threads = 0;            ///< 0: as many as cores
-  std::filesystem::path out;  ///< empty: runs/NAME
-  bool force = false;         ///< write into a folder that is not empty
-  bool summary_only = false;  ///< no report, no pictures
+  int seeds = 0;                 ///< 0: those of the scenario
+  int threads = 0;               ///< 0: as many as cores
+  std::filesystem::path out;     ///< empty: runs/NAME
+  bool force = false;            ///< write into a folder that is not empty
+  bool summary_only = false;     ///< no report, no pictures
+  std::filesystem::path resume;  ///< run folder to go on with; the others but threads are those it began with
+  double checkpoint_minutes =
+      -1;  ///< wall time between checkpoints; 0: none; below: as it began, or the default
 };
 
 struct SweepOptions {

@@ -62,7 +62,7 @@ int main(int argc, char** argv) {
 
   RunOptions run;
   CLI::App* run_app = app.add_subcommand("run", "Run a scenario and write its report");
-  run_app->add_option("file", run.file, "Scenario file (YAML)")->required();
+  CLI::Option* const run_file = run_app->add_option("file", run.file, "Scenario file (YAML)");
   run_app
       ->add_option("--seeds", run.seeds,
                    "Number of seeds: those of the scenario first, then the integers that follow the last")
@@ -78,11 +78,22 @@ int main(int argc, char** argv) {
   run_app->add_flag("--force", run.force, "Write into --out even if it holds something");
   run_app->add_flag("--summary-only", run.summary_only,
                     "Write summary.json and sections.csv, no report and no pictures");
+  run_app
+      ->add_option("--checkpoint-minutes", run.checkpoint_minutes,
+                   "Wall time between checkpoints, from which a run that was killed can be resumed; 0: none; "
+                   "default: 5")
+      ->check(CLI::Range(0.0, 1e6));
+  CLI::Option* const run_resume = run_app->add_option(
+      "--resume", run.resume, "Go on with the run in this folder, killed or interrupted; same results");
+  for (const char* other : {"file", "--seeds", "--out", "--set", "--force"})
+    run_resume->excludes(run_app->get_option(other));
   run_app->footer(
-      "\nExit codes: 0 done; 1 failed; 2 bad input; 3 the run broke the watch on energy, numbers and lost "
-      "rock, and does not count; 130 interrupted\n"
+      "\nExit codes: 0 done; 1 failed (disk full, no memory); 2 bad input; 3 the run broke the watch on "
+      "energy, "
+      "numbers and lost rock, or blew up, and does not count; 130 interrupted\n"
       "\nExamples:\n  scree run scenarios/quick_dump.yaml\n"
-      "  scree run scenarios/a1_10m.yaml --seeds 5 --out runs/a1_five --set experiment.dumps=2\n");
+      "  scree run scenarios/a1_10m.yaml --seeds 5 --out runs/a1_five --set experiment.dumps=2\n"
+      "  scree run --resume runs/a1_five\n");
 
   SweepOptions sweep;
   CLI::App* sweep_app = app.add_subcommand("sweep", "Run a scenario over many values of its parameters");
@@ -453,6 +464,11 @@ int main(int argc, char** argv) {
     return kBadInput;
   }
 
+  if (*run_app && run_file->count() == 0 && run_resume->count() == 0) {
+    fmt::print(stderr, "scree: run needs a scenario file, or --resume and a run folder\n");
+    return kBadInput;
+  }
+  signal(SIGXFSZ, SIG_IGN);  // a file at its limit is then an error of the write, with a message
   struct sigaction action = {};
   action.sa_handler = on_interrupt;
   sigaction(SIGINT, &action, nullptr);

@@ -22,6 +22,7 @@ std::string spell_duration(double seconds) {
 ProgressDisplay::ProgressDisplay(std::vector<std::uint64_t> seeds)
     : seeds_(std::move(seeds)),
       progress_(seeds_.size()),
+      first_share_(seeds_.size(), -1),
       start_(std::chrono::steady_clock::now()),
       drawn_(start_),
       terminal_(isatty(STDERR_FILENO) != 0) {}
@@ -29,6 +30,7 @@ ProgressDisplay::ProgressDisplay(std::vector<std::uint64_t> seeds)
 void ProgressDisplay::update(std::size_t seed_index, const RunProgress& progress) {
   const std::lock_guard lock(mutex_);
   progress_[seed_index] = progress;
+  if (first_share_[seed_index] < 0) first_share_[seed_index] = progress.share;
   const auto now = std::chrono::steady_clock::now();
   if (std::chrono::duration<double>(now - drawn_).count() < (terminal_ ? kTerminalInterval : kPlainInterval))
     return;
@@ -37,16 +39,18 @@ void ProgressDisplay::update(std::size_t seed_index, const RunProgress& progress
 }
 
 void ProgressDisplay::draw(bool last) {
-  double share = 0, steps = 0;
+  double share = 0, before = 0, steps = 0;
   const RunProgress* shown = &progress_.front();
   for (const RunProgress& p : progress_) {
     share += p.share / static_cast<double>(progress_.size());
     steps += p.particle_steps;
     if (p.share > 0 && p.share < 1 && (shown->share == 0 || shown->share >= 1)) shown = &p;
   }
+  for (const double first : first_share_) before += std::max(first, 0.0) / static_cast<double>(seeds_.size());
   const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  const std::string left =
-      share > 0.02 ? "about " + spell_duration(elapsed * (1 - share) / share) + " left" : "estimating";
+  const std::string left = share - before > 0.02
+                               ? "about " + spell_duration(elapsed * (1 - share) / (share - before)) + " left"
+                               : "estimating";
   std::string where = shown->dumps > 1
                           ? fmt::format("load {} of {}, {}", shown->dump, shown->dumps, shown->stage)
                           : shown->stage;
@@ -63,6 +67,12 @@ void ProgressDisplay::draw(bool last) {
     fmt::print(stderr, "{}\n", text);
   }
   std::fflush(stderr);
+}
+
+void ProgressDisplay::say(const std::string& text) {
+  const std::lock_guard lock(mutex_);
+  fmt::print(stderr, "{}{}\n", line_open_ ? "\r\033[K" : "", text);
+  line_open_ = false;
 }
 
 void ProgressDisplay::finish() {

@@ -15,6 +15,8 @@ class ProgressDisplay {
   explicit ProgressDisplay(std::vector<std::uint64_t> seeds);
   /// Called from any thread.
   void update(std::size_t seed_index, const RunProgress& progress);
+  /// Prints a line of its own. Called from any thread.
+  void say(const std::string& text);
   /// Ends the bar's line.
   void finish();
 
@@ -22,6 +24,7 @@ class ProgressDisplay {
   void draw(bool last);
   std::vector<std::uint64_t> seeds_;
   std::vector<RunProgress> progress_;
+  std::vector<double> first_share_;  // of a seed that goes on: what was done before
   std::chrono::steady_clock::time_point start_, drawn_;
   bool terminal_;
   bool line_open_ = false;

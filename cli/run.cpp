@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <exception>
-#include <fstream>
 #include <limits>
 #include <memory>
-#include <mutex>
+#include <optional>
+#include <stdexcept>
 #include <thread>
 
 #include "analysis/conductivity_table.h"
@@ -18,22 +17,16 @@
 #include "cli/output_folder.h"
 #include "cli/progress.h"
 #include "cli/results_of.h"
+#include "cli/run_folder.h"
+#include "cli/seed_run.h"
 #include "cli/table.h"
-#include "scree_version.h"
+#include "sim/io/text_file.h"
 #include "sim/io/trajectory.h"
+#include "sim/material/input_bytes.h"
 
 namespace fs = std::filesystem;
 
 namespace {
-
-void write_text(const fs::path& file, const std::string& text) {
-  std::ofstream out(file);
-  out << text;
-  out.close();
-  if (!out)
-    throw std::runtime_error(
-        fmt::format("{}: cannot be written (disk full, or no permission?)", file.string()));
-}
 
 constexpr std::uint64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
 
@@ -50,57 +43,99 @@ std::vector<std::uint64_t> chosen_seeds(const scree::Scenario& scenario, int cou
   return seeds;
 }
 
-// HDF5 as packaged is not safe for several threads; frames are rare.
-std::mutex trajectory_mutex;
+constexpr double kCheckpointMinutes = 5;
 
-struct SeedRun {
-  std::uint64_t seed = 0;
-  std::unique_ptr<scree::SeedResult> result;
-  std::vector<std::string> notes;
-  std::string failure;
-  bool blew_up = false;  // the failure is one of the watch
+/// What is to be run, where.
+struct Plan {
+  scree::Scenario scenario;
+  fs::path out;
+  bool resume = false, summary_only = false;
+  RunRecord record;
+  std::unique_ptr<FolderLock> lock;
 };
 
-void run_seed(const scree::Scenario& scenario, SeedRun& run, int threads, const fs::path& folder,
-              scree::ProgressDisplay& display, std::size_t index) {
-  std::unique_ptr<scree::TrajectoryWriter> trajectory;
-  scree::RunHooks hooks;
-  if (scenario.output.trajectory) {
-    hooks.begin = [&](const std::vector<scree::Grain>& grains, const std::vector<scree::Grain>& fixed) {
-      const std::lock_guard lock(trajectory_mutex);
-      fs::create_directories(folder);
-      trajectory = std::make_unique<scree::TrajectoryWriter>(
-          folder / "particles.h5", grains, fixed,
-          scree::TrajectoryInfo{"scree user", SCREE_VERSION, scenario.resolved_yaml, run.seed});
-    };
-    hooks.frame = [&](const scree::Snapshot& snapshot, std::int64_t step) {
-      const std::lock_guard lock(trajectory_mutex);
-      trajectory->write(snapshot, step);
-    };
+// False, with messages, if the scenario cannot be run.
+bool check(const scree::ScenarioResult& loaded) {
+  for (const std::string& warning : loaded.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
+  if (!loaded.errors.empty()) return false;
+  if (loaded.scenario.output.trajectory && !loaded.scenario.effects.empty() &&
+      scree::effective_model(loaded.scenario).changes.breakage.on()) {
+    fmt::print(stderr,
+               "scree: effects.breakage: a trajectory has a row for each grain put in and none for "
+               "fragments; add --set output.trajectory=false\n");
+    return false;
   }
-  std::optional<scree::FlowRecorder> flow = scree::make_flow_recorder(scenario);
-  if (flow) hooks.look = [&](const scree::Snapshot& snapshot) { flow->add(snapshot); };
-  hooks.progress = [&](const scree::RunProgress& p) {
-    display.update(index, p);
-    return interrupted == 0;
-  };
+  return true;
+}
+
+// Both throw std::runtime_error with what to do about it.
+
+std::optional<Plan> plan_new(const RunOptions& options) {
+  scree::ScenarioResult loaded = scree::load_scenario(options.file, options.overrides, asset_dir());
+  if (!check(loaded)) return std::nullopt;
+  Plan plan;
+  plan.scenario = std::move(loaded.scenario);
+  plan.scenario.seeds = chosen_seeds(plan.scenario, options.seeds);
+  if (plan.scenario.seeds.empty())
+    throw std::runtime_error(fmt::format(
+        "--seeds {}: no integers follow the scenario's last seed; give them in its file", options.seeds));
+  plan.out = options.out.empty() ? free_run_folder(plan.scenario.name) : options.out;
+  if (!prepare_folder(plan.out, options.force)) return std::nullopt;
+  plan.lock = std::make_unique<FolderLock>(plan.out);
+  plan.summary_only = options.summary_only;
+  plan.record = {
+      program_version(),  scenario_hash(plan.scenario),
+      plan.scenario.name, plan.scenario.seeds,
+      plan.summary_only,  options.checkpoint_minutes < 0 ? kCheckpointMinutes : options.checkpoint_minutes};
+  return plan;
+}
+
+std::optional<Plan> plan_resumed(const RunOptions& options) {
+  Plan plan;
+  plan.resume = true;
+  plan.out = options.resume;
+  plan.record = read_record(plan.out);
+  plan.lock = std::make_unique<FolderLock>(plan.out);
+  const fs::path file = plan.out / "scenario.yaml";
+  scree::ScenarioResult loaded = scree::load_scenario(file, {}, asset_dir());
+  if (!check(loaded)) return std::nullopt;
+  plan.scenario = std::move(loaded.scenario);
+  if (plan.record.program != program_version())
+    throw std::runtime_error(
+        fmt::format("{}: begun by {}, this is {}: the numbers may differ. Resume with that program, or start "
+                    "anew: scree run {} --out NEW",
+                    plan.out.string(), plan.record.program, program_version(), file.string()));
+  if (plan.record.scenario != scenario_hash(plan.scenario))
+    throw std::runtime_error(
+        fmt::format("{}: this file, or a grading or mesh that it names, has changed since the run began. Put "
+                    "it back, or start anew: scree run {} --out NEW",
+                    file.string(), file.string()));
+  plan.scenario.name = plan.record.name;
+  plan.scenario.seeds = plan.record.seeds;
+  plan.summary_only = plan.record.summary_only || options.summary_only;
+  if (options.checkpoint_minutes >= 0) plan.record.checkpoint_minutes = options.checkpoint_minutes;
+  return plan;
+}
+
+std::optional<Plan> make_plan(const RunOptions& options) {
   try {
-    scree::RunOutcome outcome = scree::run_scenario(scenario, run.seed, threads, hooks);
-    run.notes = outcome.notes;
-    run.result = std::make_unique<scree::SeedResult>(
-        scree::analyse(scenario, run.seed, std::move(outcome), std::move(flow)));
-  } catch (const scree::BlowUp& error) {
-    run.failure = error.what();
-    run.blew_up = true;
-  } catch (const std::exception& error) {
-    run.failure = error.what();
+    return options.resume.empty() ? plan_new(options) : plan_resumed(options);
+  } catch (const std::runtime_error& error) {
+    fmt::print(stderr, "scree: {}\n", scree::one_line(error.what()));
+    return std::nullopt;
   }
-  try {
-    const std::lock_guard lock(trajectory_mutex);
-    if (trajectory) trajectory->close();
-    trajectory.reset();
-  } catch (const std::exception& error) {
-    if (run.failure.empty()) run.failure = error.what();
+}
+
+fs::path folder_of(const Plan& plan, std::uint64_t seed) {
+  return plan.out / fmt::format("seed_{}", seed);
+}
+
+void forget_checkpoints(const Plan& plan) {
+  remove_record(plan.out);
+  for (const std::uint64_t seed : plan.scenario.seeds) {
+    scree::TrajectoryWriter::forget_saved(folder_of(plan, seed) / "particles.h5");
+    Checkpoints::remove_from(folder_of(plan, seed));
   }
 }
 
@@ -108,28 +143,17 @@ void run_seed(const scree::Scenario& scenario, SeedRun& run, int threads, const 
 
 int run_run(const RunOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  scree::ScenarioResult loaded = scree::load_scenario(options.file, options.overrides, asset_dir());
-  for (const std::string& warning : loaded.warnings) fmt::print(stderr, "warning: {}\n", warning);
-  for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
-  if (!loaded.errors.empty()) return kBadInput;
-  scree::Scenario& scenario = loaded.scenario;
-
-  if (scenario.output.trajectory && !scenario.effects.empty() &&
-      scree::effective_model(scenario).changes.breakage.on()) {
-    fmt::print(stderr,
-               "scree: effects.breakage: a trajectory has a row for each grain put in and none for "
-               "fragments; add --set output.trajectory=false\n");
-    return kBadInput;
+  const std::optional<Plan> made = make_plan(options);
+  if (!made) return kBadInput;
+  const Plan& plan = *made;
+  const scree::Scenario& scenario = plan.scenario;
+  const fs::path& out = plan.out;
+  const bool checkpoints = plan.record.checkpoint_minutes > 0;
+  if (!plan.resume) {
+    forget_checkpoints(plan);  // of another run, with --force
+    scree::write_text_file(out / "scenario.yaml", scenario.resolved_yaml);
+    if (checkpoints) write_record(out, plan.record);
   }
-  scenario.seeds = chosen_seeds(scenario, options.seeds);
-  if (scenario.seeds.empty()) {
-    fmt::print(stderr, "--seeds {}: no integers follow the scenario's last seed; give them in its file\n",
-               options.seeds);
-    return kBadInput;
-  }
-  const fs::path out = options.out.empty() ? free_run_folder(scenario.name) : options.out;
-  if (!prepare_folder(out, options.force)) return kBadInput;
-  write_text(out / "scenario.yaml", scenario.resolved_yaml);
 
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int threads = options.threads > 0 ? options.threads : cores;
@@ -140,15 +164,30 @@ int run_run(const RunOptions& options) {
     scree::ProgressDisplay display(scenario.seeds);
     std::atomic<std::size_t> next{0};
     std::vector<std::jthread> workers;
+    SeedSettings settings;
+    settings.threads = std::max(1, threads / side_by_side);
+    settings.checkpoint.program = plan.record.program;
+    settings.checkpoint.scenario = plan.record.scenario;
+    settings.checkpoint_minutes = plan.record.checkpoint_minutes;
+    settings.resume = plan.resume;
+    settings.keep_finished = runs.size() > 1;
     for (int w = 0; w < side_by_side; ++w)
       workers.emplace_back([&] {
-        for (std::size_t k = next++; k < runs.size() && !interrupted; k = next++)
-          run_seed(scenario, runs[k], std::max(1, threads / side_by_side),
-                   out / fmt::format("seed_{}", runs[k].seed), display, k);
+        for (std::size_t k = next++; k < runs.size() && !interrupted; k = next++) {
+          SeedSettings own = settings;
+          own.folder = folder_of(plan, runs[k].seed);
+          run_seed(scenario, runs[k], own, display, k);
+        }
       });
     workers.clear();
     display.finish();
   }
+  const bool worth_resuming =
+      checkpoints && (interrupted || std::any_of(runs.begin(), runs.end(),
+                                                 [](const SeedRun& run) { return run.worth_resuming; }));
+  const auto say_how_to_resume = [&] {
+    if (worth_resuming) fmt::print(stderr, "to go on: scree run --resume {}\n", out.string());
+  };
 
   std::vector<scree::SeedResult> results;
   std::vector<std::string> notes, failures;
@@ -175,6 +214,8 @@ int run_run(const RunOptions& options) {
   }
   if (results.empty()) {
     fmt::print(stderr, "no seed came to a result; what was written is in {}\n", out.string());
+    say_how_to_resume();
+    if (!worth_resuming) forget_checkpoints(plan);
     return interrupted ? kInterrupted : std::max<int>(code, kFailed);
   }
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -188,14 +229,14 @@ int run_run(const RunOptions& options) {
   scree::write_summary(result, out / "summary.json");
   scree::write_sections_csv(result, out / "sections.csv");
   scree::write_conductivity_csv(result, out / "ksat.csv");
-  if (!options.summary_only) {
+  if (!plan.summary_only) {
     scree::SceneFacts scene;
     if (const scree::BenchSpec* bench = scree::bench_of(scenario)) scene.bench_slope = bench->slope_deg;
     scree::write_report(result, out, scene);
   }
 
   scree::print_result(result);
-  fmt::print("\n{}: {}\n", options.summary_only ? "summary" : "report",
-             (out / (options.summary_only ? "summary.json" : "report.html")).string());
-  return interrupted ? kInterrupted : code;
+  say_how_to_resume();
+  if (!worth_resuming) forget_checkpoints(plan);
+  return interrupted ? kInterrupted : std::max<int>(code, kFailed);
 }

@@ -1,7 +1,9 @@
 #include "sim/io/h5_file.h"
 
 #include <algorithm>
+#include <system_error>
 
+#include "sim/io/h5_undo_driver.h"
 #include "sim/io/text_file.h"
 
 namespace scree {
@@ -50,8 +52,16 @@ QuietHdf5::~QuietHdf5() {
   H5Eset_auto2(H5E_DEFAULT, function_, data_);
 }
 
-H5File::H5File(const std::filesystem::path& path) : path_(path) {
-  file_ = checked(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+H5File::H5File(const std::filesystem::path& path, bool create) : path_(path) {
+  const H5Handle access = undo_access();
+  check(access);
+  file_ = checked(create ? H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access)
+                         : H5Fopen(path.c_str(), H5F_ACC_RDWR, access),
+                  H5Fclose);
+}
+
+H5Handle H5File::dataset(const char* path) const {
+  return checked(H5Dopen2(file_, path, H5P_DEFAULT), H5Dclose);
 }
 
 H5Handle H5File::group(hid_t parent, const char* name) const {
@@ -113,8 +123,21 @@ void H5File::link(hid_t from, hid_t to, const char* name) const {
   check(H5Lcreate_hard(from, name, to, name, H5P_DEFAULT, H5P_DEFAULT));
 }
 
+void H5File::cut(hid_t set, hsize_t frames, const Shape& row) const {
+  check(H5Dset_extent(set, after(frames, row).data()));
+}
+
 void H5File::flush() const {
   check(H5Fflush(file_, H5F_SCOPE_GLOBAL));
+}
+
+void H5File::mark() const {
+  flush();
+  try {
+    undo_file_of(file_)->mark();
+  } catch (const std::system_error& error) {
+    fail_to_write(path_, error.code().message());
+  }
 }
 
 void H5File::close() {

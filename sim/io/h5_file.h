@@ -45,13 +45,16 @@ class QuietHdf5 {
   void* data_ = nullptr;
 };
 
-/// A new HDF5 file. Every act throws std::runtime_error with the file's name and the reason when it fails.
+/// An HDF5 file, new or to be gone on with, that can be taken back to a mark (undo_file.h). Every act throws
+/// std::runtime_error with the file's name and the reason when it fails.
 class H5File {
  public:
   /// Shape of a data set, or of one row of it.
   using Shape = std::vector<hsize_t>;
 
-  explicit H5File(const std::filesystem::path& path);
+  explicit H5File(const std::filesystem::path& path, bool create = true);
+
+  H5Handle dataset(const char* path) const;
 
   H5Handle group(hid_t parent, const char* name) const;
   H5Handle group(const char* name) const { return group(file_, name); }
@@ -68,9 +71,13 @@ class H5File {
   H5Handle growing(hid_t parent, const char* name, hid_t type, const Shape& row, bool compress) const;
   /// Writes row number `frame`, after growing the set to hold it.
   void append(hid_t set, hid_t type, hsize_t frame, const Shape& row, const void* data) const;
+  /// Leaves the first `frames` rows of a set that grows.
+  void cut(hid_t set, hsize_t frames, const Shape& row) const;
   /// A hard link: `name` of group `from` stands in group `to` too.
   void link(hid_t from, hid_t to, const char* name) const;
   void flush() const;
+  /// Flushes, syncs to the disk, and sets the mark.
+  void mark() const;
   void close();
 
  private:

@@ -1,6 +1,8 @@
 #include "sim/io/trajectory.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -14,6 +16,7 @@
 
 #include "sim/io/h5_file.h"
 #include "sim/io/text_file.h"
+#include "sim/io/undo_file.h"
 
 namespace scree {
 namespace {
@@ -75,10 +78,7 @@ struct TrajectoryWriter::Files {
         const TrajectoryInfo& info)
       : file(path), h5(path), rows(all.size()), base_rows(base.size()) {
     place = positions_of(all);
-    dump = column<std::int32_t>(all, &Grain::dump);
-    for (std::size_t row = 0; row < rows; ++row)
-      if (!row_of.emplace(all[row].id, row).second)
-        throw std::invalid_argument(fmt::format("trajectory: id {} occurs twice", all[row].id));
+    number_rows(all);
     measure_box(all, base);
     create_head(info);
     create_rock(all);
@@ -89,8 +89,54 @@ struct TrajectoryWriter::Files {
     write_xdmf();
   }
 
+  Files(const std::filesystem::path& path, const std::vector<Grain>& all, StateReader& saved)
+      : file(path), h5(path, false), rows(all.size()) {
+    state(saved);
+    if (place.size() != 3 * rows) throw StateError("saved state: its trajectory has other grains");
+    number_rows(all);
+    step = h5.dataset("/particles/rock/position/step");
+    time = h5.dataset("/particles/rock/position/time");
+    position = h5.dataset("/particles/rock/position/value");
+    velocity = h5.dataset("/particles/rock/velocity/value");
+    diameter = h5.dataset("/particles/rock/diameter/value");
+    for (const H5Handle* growing : {&position, &velocity}) h5.cut(*growing, times.size(), {rows, 3});
+    h5.cut(diameter, times.size(), {rows});
+    for (const H5Handle* growing : {&step, &time}) h5.cut(*growing, times.size(), {});
+    h5.flush();
+    std::error_code error;
+    const std::uint64_t there = std::filesystem::file_size(xyz_file(), error);
+    if (!error && there < xyz_size) error = std::make_error_code(std::errc::no_such_file_or_directory);
+    if (!error) std::filesystem::resize_file(xyz_file(), xyz_size, error);
+    if (error) fail_to_write(xyz_file(), error.message());
+    xyz.open(xyz_file(), std::ios::binary | std::ios::app);
+    if (!xyz) fail_to_write(xyz_file(), std::strerror(errno));
+    write_xdmf();
+  }
+
+  template <class Stream>
+  void state(Stream& stream) {
+    stream.section("trajectory", 1);
+    stream(times, place, xyz_size, base_rows, low, edges);
+  }
+
+  void save(StateWriter& writer) {
+    h5.mark();
+    if (const int text = open(xyz_file().c_str(), O_WRONLY | O_CLOEXEC); text >= 0) {
+      fdatasync(text);
+      ::close(text);
+    }
+    state(writer);
+  }
+
   std::filesystem::path xyz_file() const { return std::filesystem::path(file).replace_extension(".xyz"); }
   std::filesystem::path xdmf_file() const { return std::filesystem::path(file).replace_extension(".xdmf"); }
+
+  void number_rows(const std::vector<Grain>& all) {
+    dump = column<std::int32_t>(all, &Grain::dump);
+    for (std::size_t row = 0; row < rows; ++row)
+      if (!row_of.emplace(all[row].id, row).second)
+        throw std::invalid_argument(fmt::format("trajectory: id {} occurs twice", all[row].id));
+  }
 
   void measure_box(const std::vector<Grain>& all, const std::vector<Grain>& base) {
     Vec3 high = Vec3::Constant(std::numeric_limits<double>::lowest());
@@ -207,6 +253,7 @@ struct TrajectoryWriter::Files {
     xyz.write(text.data(), static_cast<std::streamsize>(text.size()));
     xyz.flush();
     if (!xyz) fail_to_write(xyz_file(), std::strerror(errno));
+    xyz_size += text.size();
   }
 
   /// ParaView's form: a collection over time, and the fixed balls beside it.
@@ -254,7 +301,7 @@ struct TrajectoryWriter::Files {
 
   std::filesystem::path file;
   H5File h5;
-  hsize_t rows, base_rows;
+  std::uint64_t rows, base_rows = 0;
   Vec3 low = Vec3::Zero(),
        edges = Vec3::Zero();  // box around all future places; nominal, as the model is open
   std::unordered_map<std::int64_t, std::size_t> row_of;
@@ -263,6 +310,7 @@ struct TrajectoryWriter::Files {
   std::vector<double> times;
   H5Handle step, time, position, velocity, diameter;
   std::ofstream xyz;
+  std::uint64_t xyz_size = 0;  // bytes
 };
 
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& h5_file, const std::vector<Grain>& all,
@@ -270,6 +318,27 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& h5_file, const s
   if (all.empty()) throw std::invalid_argument("trajectory: there are no grains");
   const QuietHdf5 quiet;
   files_ = std::make_unique<Files>(h5_file, all, base, info);
+}
+
+TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& h5_file, const std::vector<Grain>& all,
+                                   StateReader& state) {
+  try {
+    UndoFile::take_back(h5_file);
+  } catch (const std::system_error& error) {
+    fail_to_write(h5_file, error.code().message());
+  }
+  const QuietHdf5 quiet;
+  files_ = std::make_unique<Files>(h5_file, all, state);
+}
+
+void TrajectoryWriter::save(StateWriter& state) {
+  if (!files_) throw std::runtime_error("trajectory: saved after close");
+  const QuietHdf5 quiet;
+  files_->save(state);
+}
+
+void TrajectoryWriter::forget_saved(const std::filesystem::path& h5_file) {
+  UndoFile::forget(h5_file);
 }
 
 TrajectoryWriter::~TrajectoryWriter() {

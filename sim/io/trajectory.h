@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/io/snapshot.h"
+#include "sim/io/state_stream.h"
 
 namespace scree {
 
@@ -36,6 +37,10 @@ class TrajectoryWriter {
   /// file cannot be created.
   TrajectoryWriter(const std::filesystem::path& h5_file, const std::vector<Grain>& all,
                    const std::vector<Grain>& base = {}, const TrajectoryInfo& info = {});
+  /// Goes on with the files that were there when `state` was saved by save(); what was written since is cut
+  /// off. The other arguments as when they were begun. Throws std::runtime_error when the files are not there
+  /// any more, StateError when the state does not fit them.
+  TrajectoryWriter(const std::filesystem::path& h5_file, const std::vector<Grain>& all, StateReader& state);
   ~TrajectoryWriter();  ///< Closes; a failure is silent, so call close() to hear of it.
   TrajectoryWriter(const TrajectoryWriter&) = delete;
   TrajectoryWriter& operator=(const TrajectoryWriter&) = delete;
@@ -43,6 +48,10 @@ class TrajectoryWriter {
   /// Appends a frame. Grains are matched by id; an unknown id is std::invalid_argument. Throws
   /// std::runtime_error when the disk is full or the file cannot be written; frames before it stay readable.
   void write(const Snapshot& snapshot, std::int64_t step);
+  /// Syncs the files to the disk, and tells how far they have come.
+  void save(StateWriter& state);
+  /// A trajectory that has come to its end: it need not be gone on with any more.
+  static void forget_saved(const std::filesystem::path& h5_file);
   /// Finishes the files. Throws std::runtime_error; a second call does nothing.
   void close();
   std::int64_t frames() const;

@@ -31,19 +31,24 @@ RunOutcome run_drop_test(const Scenario& scenario, const DropTest& e, std::uint6
     if (world.time() > kMostTime * fall) throw std::runtime_error("the rock has not come to its rebound");
     if (!stage.advance(kLook, bounced ? "rebounding" : "falling", bounced ? 0.7 : 0.0, bounced ? 1.0 : 0.7))
       return stage.finish();
-    const Snapshot now = world.snapshot();
-    if (now.grains.empty())
+    Grain rock;
+    const double grains = stage.observe([&] {
+      const Snapshot now = world.snapshot();
+      if (!now.grains.empty()) rock = now.grains.front();
+      return static_cast<double>(now.grains.size());
+    });
+    if (grains == 0)
       throw std::runtime_error(
           "the rock went through the floor: raise material.effective_modulus_pa or lower "
           "experiment.height_m");
-    if (now.grains.size() > 1)
+    if (grains > 1)
       throw std::runtime_error(
           "the rock broke and has no rebound: lower effects.breakage.fragility_kg_per_j");
-    const Grain& rock = now.grains.front();
-    const bool rises = rock.velocity.z() > 0;
+    const double height = stage.observe([&] { return rock.position.z() - radius; });
+    const bool rises = stage.observe([&] { return rock.velocity.z(); }) > 0;
     if (bounced && !rises) break;
     bounced = bounced || rises;
-    if (bounced) highest = std::max(highest, rock.position.z() - radius);
+    if (bounced) highest = std::max(highest, height);
   }
   RunOutcome outcome = stage.finish();
   outcome.rebound_height = highest;

@@ -80,8 +80,9 @@ class Pushing {
   }
 
   bool lay_heap(const Pose& box, const Part& part) {
-    stage_.add_load(
-        rock_under(world_.snapshot().grains, box.position.x(), box.position.y(), e_.load_box, ground_));
+    stage_.add_load(stage_.observe([&] {
+      return rock_under(world_.snapshot().grains, box.position.x(), box.position.y(), e_.load_box, ground_);
+    }));
     return stage_.advance_to_rest("dumping", part.at(0), part.at(1));
   }
 
@@ -94,10 +95,16 @@ class Pushing {
       const double edge = ground_ + e_.blade.heights[level];
       double left = 0;
       for (int pass = 0;; ++pass) {
-        const std::vector<Grain> grains = world_.snapshot().grains;
-        left = rock_before_blade(grains, edge, end);
+        left = stage_.observe([&] { return rock_before_blade(world_.snapshot().grains, edge, end); });
         if (left <= allowed || pass == e_.blade.passes) break;
-        const BladePass next = next_pass(grains, reach, edge, end, 0.5 * e_.bench.width);
+        BladePass next;
+        const auto look = [&] {
+          next = next_pass(world_.snapshot().grains, reach, edge, end, 0.5 * e_.bench.width);
+          return next.mass;
+        };
+        next.mass = stage_.observe(look);
+        next.y = stage_.observe([&] { return next.y; });
+        next.start = stage_.observe([&] { return next.start; });
         if (next.mass == 0) break;
         const double share = (static_cast<double>(level) + static_cast<double>(pass) / e_.blade.passes);
         const Part of_pass{part.at(share / heights), part.length / heights / e_.blade.passes};

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/io/snapshot.h"
+#include "sim/io/snapshot_state.h"
 #include "sim/scene/scenario.h"
 #include "sim/world/rock_world.h"
 
@@ -34,6 +34,17 @@ struct RunHooks {
   std::function<void(const Snapshot&)> look;
   /// Some ten times a second of simulated time; returning false ends the run, keeping what is done.
   std::function<bool(const RunProgress&)> progress;
+
+  /// Asked after `progress`, as often; true: `save` is called. Not asked of an engine that cannot be saved
+  /// (RockWorld::keeps_state).
+  std::function<bool()> save_due;
+  /// Takes the state of the run: everything from which it goes on with the same bits.
+  std::function<void(double time, const std::function<void(StateWriter&)>& state)> save;
+  /// A state that `save` was given for the same scenario and seed; the run goes on from there. None of the
+  /// others but `begin` is called for what was done before.
+  StateReader* resume = nullptr;
+  /// All of that state has been read, and the run is as it was.
+  std::function<void()> resumed;
 };
 
 /// What a run ends with.
@@ -42,6 +53,11 @@ struct RunOutcome {
   struct AfterDump {
     int dump;
     Snapshot pile;
+
+    template <class Stream>
+    void state(Stream& stream) {
+      stream(dump, pile);
+    }
   };
   std::vector<AfterDump> after_dumps;    ///< the piles asked for in output.after_dumps, but for the last
   std::vector<Grain> original;           ///< every grain as generated
@@ -53,10 +69,17 @@ struct RunOutcome {
   bool at_rest = true;  ///< every load came to rest before stop.max_time
   bool interrupted = false;
   std::vector<std::string> notes;
+
+  /// Every member, to keep a seed that has come to its end.
+  template <class Stream>
+  void state(Stream& stream) {
+    stream(final_state, after_dumps, original, fixed, rebound_height, statistics, energy, simulated_seconds,
+           wall_seconds, at_rest, interrupted, notes);
+  }
 };
 
 /// Runs one seed with `threads` worker threads. Throws BlowUp, std::runtime_error (meshes),
-/// std::invalid_argument (rock that does not fit its container).
+/// std::invalid_argument (rock that does not fit its container), StateError (`hooks.resume` does not fit).
 RunOutcome run_scenario(const Scenario& scenario, std::uint64_t seed, int threads, const RunHooks& hooks);
 
 }  // namespace scree

@@ -41,6 +41,10 @@ Stage::Stage(const Scenario& scenario, std::uint64_t seed, int threads, const Ru
   settings.sleep = scenario.numerics.sleep;
   settings.wake_tolerance = scenario.numerics.wake_tolerance;
   settings.threads = threads;
+  if (hooks_.resume != nullptr) {
+    hooks_.resume->section("stage", 1);
+    (*hooks_.resume)(saved_ticks_, observed_);
+  }
   world_ =
       scenario.engine == EngineKind::rrlinear ? make_rrlinear_world(settings) : make_impulse_world(settings);
 }
@@ -120,23 +124,61 @@ void Stage::push_load(const Vec3& velocity) {
     world_->set_velocity(static_cast<std::int64_t>(first + k), velocity, Vec3::Zero());
 }
 
+double Stage::recall() {
+  if (recalled_ == observed_.size()) throw StateError("saved state: it is of another run");
+  return observed_[recalled_++];
+}
+
+template <class Stream>
+void Stage::state(Stream& stream) {
+  if constexpr (Stream::kReads)
+    world_->load_state(stream);
+  else
+    world_->save_state(stream);
+  stream.section("outcome", 1);
+  double wall =
+      wall_before_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  stream(outcome_.after_dumps, wall);
+  if (Stream::kReads) wall_before_ = wall;
+}
+
+void Stage::save() {
+  hooks_.save(world_->time(), [this](StateWriter& writer) {
+    writer.section("stage", 1);
+    writer(ticks_, observed_);
+    state(writer);
+  });
+}
+
+void Stage::take_up() {
+  const double time = world_->time();
+  state(*hooks_.resume);
+  if (recalled_ != observed_.size() || world_->time() != time)
+    throw StateError("saved state: it is of another run");
+  if (hooks_.resumed) hooks_.resumed();
+}
+
 bool Stage::tick(double until, const char* stage, double share) {
   const double interval = scenario_.output.frame_interval;
   if (interval > 0 && hooks_.frame && world_->time() >= next_frame_ - 1e-9) {
-    hooks_.frame(world_->snapshot(), world_->statistics().steps);
+    if (!replaying()) hooks_.frame(world_->snapshot(), world_->statistics().steps);
     next_frame_ += interval;
   }
+  if (replaying()) {
+    world_->skip_to(until);
+    if (++ticks_ == saved_ticks_) take_up();
+    return true;
+  }
+  ++ticks_;
   world_->advance_to(until);
   if (hooks_.look) hooks_.look(world_->snapshot());
   progress_.share = share;
   progress_.time = world_->time();
   progress_.stage = stage;
   progress_.particle_steps = world_->statistics().particle_steps;
-  if (hooks_.progress && !hooks_.progress(progress_)) {
-    outcome_.interrupted = true;
-    return false;
-  }
-  return true;
+  if (hooks_.progress && !hooks_.progress(progress_)) outcome_.interrupted = true;
+  if (hooks_.save && world_->keeps_state() && hooks_.save_due()) save();
+  return !outcome_.interrupted;
 }
 
 bool Stage::advance(double seconds, const char* stage, double share_now, double share_then) {
@@ -153,11 +195,13 @@ bool Stage::advance_to_rest(const char* stage, double share_now, double share_th
   const double start = world_->time();
   while (true) {
     const double passed = world_->time() - start;
-    double mass = 0;
-    for (int i = 0; i < world_->spheres().movable; ++i)
-      if (!world_->spheres().lost[i]) mass += world_->spheres().velocity[i].w;
     // The share is of the load's mass, so that a growing pile does not hide that a load still moves.
-    progress_.moving_share = load_mass_ > 0 ? world_->moving_mass_share(stop.speed) * mass / load_mass_ : 0;
+    progress_.moving_share = observe([&] {
+      double mass = 0;
+      for (int i = 0; i < world_->spheres().movable; ++i)
+        if (!world_->spheres().lost[i]) mass += world_->spheres().velocity[i].w;
+      return load_mass_ > 0 ? world_->moving_mass_share(stop.speed) * mass / load_mass_ : 0.0;
+    });
     if (passed >= stop.min_time && progress_.moving_share < stop.moving_mass_share) return true;
     if (passed >= stop.max_time) {
       outcome_.at_rest = false;
@@ -174,17 +218,20 @@ bool Stage::advance_to_rest(const char* stage, double share_now, double share_th
 }
 
 void Stage::dump_done(int dump, int dumps) {
+  if (replaying()) return;  // kept piles come with the saved state
   const auto& asked = scenario_.output.after_dumps;
   if (dump < dumps && std::find(asked.begin(), asked.end(), dump) != asked.end())
     outcome_.after_dumps.push_back({dump, world_->snapshot()});
 }
 
 RunOutcome Stage::finish() {
+  if (replaying()) throw StateError("saved state: it is of another run");
   outcome_.final_state = world_->snapshot();
   if (hooks_.frame) hooks_.frame(outcome_.final_state, world_->statistics().steps);
   outcome_.statistics = world_->statistics();
   outcome_.energy = world_->energy_balance();
   outcome_.simulated_seconds = world_->time();
+  outcome_.wall_seconds = wall_before_;
   if (model_.changes.breakage.on())
     note(fmt::format("seed {}: {} grains broke, fragments of fragments included", seed_,
                      outcome_.statistics.broken_spheres));
@@ -202,7 +249,7 @@ RunOutcome run_scenario(const Scenario& scenario, std::uint64_t seed, int thread
                      [&](const DropTest& e) { return run_drop_test(scenario, e, seed, threads, hooks); },
                  },
                  scenario.experiment);
-  outcome.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  outcome.wall_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return outcome;
 }
 

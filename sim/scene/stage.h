@@ -1,5 +1,6 @@
 #pragma once
-// What all experiments share: a world, time that goes on with frames and progress, and rest.
+// What all experiments share: a world, time that goes on with frames and progress, rest, and being saved.
+#include <chrono>
 #include <memory>
 
 #include "sim/scene/run.h"
@@ -36,6 +37,15 @@ class Stage {
   /// Something a reader of the result should know.
   void note(std::string text) { outcome_.notes.push_back(std::move(text)); }
 
+  /// Something that the experiment learns from the world and acts on: look(), a number. When a run is taken
+  /// up again it is what was learnt then; nothing else may be read of the world but its time.
+  template <class Look>
+  double observe(const Look& look) {
+    if (replaying()) return recall();
+    observed_.push_back(look());
+    return observed_.back();
+  }
+
   /// Advances by `seconds`; false when the user ended the run. `share_now`, `share_then`: of the whole run,
   /// for progress.
   bool advance(double seconds, const char* stage, double share_now, double share_then);
@@ -48,6 +58,16 @@ class Stage {
   RunOutcome finish();
 
  private:
+  // A run that is taken up again begins at its beginning: the experiment loads the trucks and moves the tools
+  // as before, but its ticks only pass the time, and what it observes comes from the saved record. The tick
+  // in which the state was saved brings that state back, and from there on the world steps again.
+  bool replaying() const { return ticks_ < saved_ticks_; }
+  double recall();
+  void save();
+  void take_up();
+  template <class Stream>
+  void state(Stream& stream);
+
   bool tick(double until, const char* stage, double share);
   Surface surface(const std::optional<double>& mu, const std::optional<double>& mu_r) const;
 
@@ -62,6 +82,11 @@ class Stage {
   std::size_t next_load_ = 0;
   double load_mass_ = 0;
   double next_frame_ = 0;
+  std::int64_t ticks_ = 0, saved_ticks_ = 0;
+  std::vector<double> observed_;  // everything that was, in order
+  std::size_t recalled_ = 0;
+  double wall_before_ = 0;  // s, of what was done before the run was taken up
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 /// The experiments; each runs a stage from its beginning to its end.

@@ -36,12 +36,20 @@ struct EnergyLosses {
     sliding += more.sliding, rolling += more.rolling, twisting += more.twisting;
     dashpots += more.dashpots, local_damping += more.local_damping;
   }
+  template <class Stream>
+  void state(Stream& stream) {
+    stream(sliding, rolling, twisting, dashpots, local_damping);
+  }
 };
 
 /// Energies of the scene, J. Elastic: of the springs of contacts; pull: potential of cohesion, negative.
 struct Energy {
   double kinetic = 0, potential = 0, elastic = 0, pull = 0;
   double total() const { return kinetic + potential + elastic + pull; }
+  template <class Stream>
+  void state(Stream& stream) {
+    stream(kinetic, potential, elastic, pull);
+  }
 };
 
 /// Sums over the run so far, J; plain numbers, so that they can be written down and read again.
@@ -52,8 +60,8 @@ struct EnergyAccount {
   double set_moving = 0;      ///< by velocities that were set
   double tools = 0;           ///< work of meshes that move, and what left with those taken away (negative)
   double shaking = 0;         ///< work of the part of gravity that swings
-  double pressed = 0;  ///< held by contacts that began while pressed, less by those that ended so: spheres
-                       ///< put upon others, corners of meshes
+  double pressed = 0;    ///< held by contacts that began while pressed, less by those that ended so: spheres
+                         ///< put upon others, corners of meshes
   double fragments = 0;  ///< change when spheres broke and fragments grew; negative: lost in fracture
   // Taken out.
   EnergyLosses losses;
@@ -62,6 +70,12 @@ struct EnergyAccount {
   double lost_other = 0;      ///< what else they took along: kinetic, and of their contacts
 
   double weight_times_radius = 0;  ///< of all spheres: energies far below it do not matter
+
+  template <class Stream>
+  void state(Stream& stream) {
+    stream(came_moving, came_potential, set_moving, tools, shaking, pressed, fragments, losses, put_to_sleep,
+           lost_potential, lost_other, weight_times_radius);
+  }
 };
 
 /// The account closed at one time.
@@ -77,6 +91,10 @@ struct EnergyBalance {
   double error() const;
   /// Error over what was put in, or over a thousandth of weight times radius if that is more.
   double relative_error() const;
+  template <class Stream>
+  void state(Stream& stream) {
+    stream(held, account);
+  }
 };
 
 }  // namespace scree

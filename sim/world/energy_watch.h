@@ -39,6 +39,10 @@ class EnergyWatch {
   /// Compares with the check before. Throws BlowUp.
   void check(const AwakeEnergy& now, double time);
 
+  /// For saving and going on: world_state.cpp.
+  template <class Stream>
+  void state(Stream& stream);
+
  private:
   bool known_ = false;
   AwakeEnergy before_;

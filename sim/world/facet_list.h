@@ -56,6 +56,9 @@ class FacetList {
   int rows() const { return static_cast<int>(slot_of_.size()); }
   /// Spheres that have facets of a mesh that moves (or will), rising.
   std::vector<int> near_tools(const Meshes& meshes, double time) const;
+  /// For saving and going on: world_state.cpp.
+  template <class Stream>
+  void state(Stream& stream);
   /// Bytes held.
   std::size_t bytes() const;
 

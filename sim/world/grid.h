@@ -46,6 +46,9 @@ class NeighbourGrid {
 
   /// Where a sphere was last placed (m), and its reach.
   const Quad& site(int i) const { return site_[i]; }
+  /// For saving and going on: world_state.cpp.
+  template <class Stream>
+  void state(Stream& stream, Team* team);
   /// Bytes held.
   std::size_t bytes() const;
 

@@ -65,6 +65,10 @@ class MeshBody {
   /// world point, by Bullet's BVH, in rising order.
   void facets_near(const Vec3& point, double range, std::vector<int>& facets) const;
 
+  /// For saving and going on: world_state.cpp.
+  template <class Stream>
+  void pose_state(Stream& stream);
+
  private:
   TriangleMesh mesh_;
   Surface surface_;

@@ -102,6 +102,9 @@ class PairList {
   Vec3 ball_at(int i) const { return grid_.site(i).vec(); }
   /// Spheres listed since the last rebuild, each as often as it was.
   std::int64_t listings() const { return listings_; }
+  /// For saving and going on: world_state.cpp.
+  template <class Stream>
+  void state(Stream& stream);
   /// Bytes held by rows, memories and grid.
   std::size_t bytes() const;
 

@@ -22,6 +22,7 @@
 
 #include "sim/contact/contact_effects.h"
 #include "sim/io/snapshot.h"
+#include "sim/io/state_stream.h"
 #include "sim/material/material.h"
 #include "sim/world/breakage.h"
 #include "sim/world/energy_balance.h"
@@ -62,6 +63,13 @@ struct WorldStatistics {
   std::int64_t crowded_contacts = 0;     ///< mesh contacts left out because a sphere had too many
   std::int64_t asleep = 0;               ///< spheres asleep now
   std::int64_t broken_spheres = 0;       ///< spheres that fragments took the place of
+
+  /// Every member, for checkpoints.
+  template <class Stream>
+  void state(Stream& stream) {
+    stream(steps, particle_steps, time_step_min, time_step_max, largest_overlap_ratio, lost_particles,
+           lost_mass, list_repairs, squeezed_into_walls, crowded_contacts, asleep, broken_spheres);
+  }
 };
 
 /// Parts a Bullet world needs before it is made.
@@ -97,6 +105,17 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   virtual void advance_to(double time) = 0;
 
   double time() const { return time_; }
+
+  /// Whether the engine can be saved and go on with the same bits.
+  virtual bool keeps_state() const { return false; }
+  /// Writes everything that later steps depend on, but for the scene's meshes and their motions.
+  virtual void save_state(StateWriter&) { throw StateError("this engine cannot be saved"); }
+  /// Goes on from a saved state. The same meshes must have been added, moved and removed before, in the same
+  /// order and at the same times; spheres and time come from the state. Throws StateError if it does not fit.
+  virtual void load_state(StateReader&) { throw StateError("this engine cannot be saved"); }
+  /// Lets time pass (to `time`, s) without a step: before load_state(), when a scene is built again.
+  void skip_to(double time) { time_ = time; }
+
   const WorldSettings& settings() const { return settings_; }
   const WorldStatistics& statistics() const { return statistics_; }
   const Spheres& spheres() const { return spheres_; }
@@ -137,6 +156,9 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   virtual void sphere_pushed(int) {}
   virtual void mesh_leaves(int) {}
   virtual void sphere_lost(int index) = 0;
+  /// State that both engines share (world_state.cpp).
+  template <class Stream>
+  void shared_state(Stream& stream);
 
   WorldSettings settings_;
   WorldStatistics statistics_;

@@ -45,6 +45,9 @@ class Rows {
     for (int k = at + 1; k < rows_[i].count; ++k) row[k - 1] = row[k];
     --rows_[i].count;
   }
+  /// For saving and going on: world_state.cpp.
+  template <class Stream>
+  void state(Stream& stream);
   /// Bytes held.
   std::size_t bytes() const { return items_.capacity() * sizeof(T) + rows_.capacity() * sizeof(Row); }
 

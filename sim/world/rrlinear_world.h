@@ -38,6 +38,9 @@ class RrlinearWorld final : public RockWorld {
   /// Bullet's own entry: steps by `span` seconds.
   int stepSimulation(btScalar span, int max_sub_steps = 1, btScalar fixed = 1. / 60) override;
   void update_bullet() override;
+  bool keeps_state() const override { return true; }
+  void save_state(StateWriter& writer) override;
+  void load_state(StateReader& reader) override;
 
  protected:
   void scene_changed() override { changed_ = true; }
@@ -47,6 +50,8 @@ class RrlinearWorld final : public RockWorld {
   void mesh_leaves(int index) override;
 
  private:
+  template <class Stream>
+  void state(Stream& stream);
   void prepare();
   void step(double dt);
   void split_awake();

@@ -57,6 +57,9 @@ class Sleep {
   std::span<const int> fallen_asleep() const { return fallen_asleep_; }
   /// Kinetic energy that these had, J.
   double put_to_sleep() const { return put_to_sleep_; }
+  /// For saving and going on: world_state.cpp.
+  template <class Stream>
+  void state(Stream& stream);
   /// Bytes held.
   std::size_t bytes() const {
     return window_start_.capacity() * (sizeof(Vec3) + 2 + sizeof(double)) + awake_.capacity() * sizeof(int);

@@ -1,5 +1,7 @@
 #include "sim/world/team.h"
 
+#include <utility>
+
 namespace scree {
 namespace {
 
@@ -31,7 +33,11 @@ bool Team::work(std::uint64_t ticket) {
   const Call call = call_.load(std::memory_order_relaxed);
   void* const body = body_.load(std::memory_order_relaxed);
   if (ticket_.compare_exchange_strong(ticket, ticket + 1, std::memory_order_acq_rel)) {
-    call(body, k);
+    try {
+      call(body, k);
+    } catch (...) {
+      if (!failed_.exchange(true)) failure_ = std::current_exception();
+    }
     done_.fetch_add(1, std::memory_order_release);
   }
   return true;
@@ -51,6 +57,9 @@ void Team::share(int count, Call call, void* body) {
   while (work(ticket_.load(std::memory_order_acquire))) {
   }
   while (done_.load(std::memory_order_acquire) < count) pause();
+  if (!failed_) return;
+  failed_ = false;
+  std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 void Team::serve() {

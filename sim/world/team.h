@@ -8,6 +8,7 @@
 // nobody comes.
 #include <atomic>
 #include <cstdint>
+#include <exception>
 #include <thread>
 #include <type_traits>
 #include <vector>
@@ -23,7 +24,8 @@ class Team {
   Team& operator=(const Team&) = delete;
 
   /// Calls body(k) for k from 0 to count - 1, beginning in this order, on any thread; one thread keeps the
-  /// order. `body` must not throw. One caller at a time.
+  /// order. When bodies throw (no memory), the first of them to do so is heard when all that were begun
+  /// have ended. One caller at a time.
   template <class Body>
   void run(int count, Body&& body) {
     if (workers_.empty() || count < 2) {
@@ -49,7 +51,8 @@ class Team {
   std::atomic<Call> call_{nullptr};
   std::atomic<void*> body_{nullptr};
   std::atomic<std::uint32_t> job_{0};  // what sleeping workers wait for
-  std::atomic<bool> end_{false};
+  std::atomic<bool> end_{false}, failed_{false};
+  std::exception_ptr failure_;  // of the job; the first
   std::vector<std::thread> workers_;
 };
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -120,6 +121,50 @@ TEST(Trajectory, KeepsOneRowAGrainForTheWholeFile) {
                           1, 0, 8, 1, 0, 8, 0, 1, 9));    // grain 2 stays at its last place
   EXPECT_THAT(file.values("particles/rock/diameter/value"), ElementsAre(0.5, 0.25, 0, 0.5, 0, 1));
   EXPECT_EQ(file.values("particles/rock/velocity/value")[2], -2);
+}
+
+// What is written after the state was saved is cut off, in all three files, and written again.
+TEST(Trajectory, GoesOnFromWhereItWasSaved) {
+  const auto whole = fresh_folder("whole") / "particles.h5", path = fresh_folder("resumed") / "particles.h5";
+  const std::vector<Grain> base{grain(0, {0, 0, 0}, 2.0, 0)};
+  {
+    TrajectoryWriter writer(whole, all_grains(), base);
+    write_two_frames(writer);
+    writer.write(frame(1.5, {grain(7, {0, 1, 4}, 1.0, 2)}), 300);
+  }
+  std::string state;
+  {
+    TrajectoryWriter writer(path, all_grains(), base);
+    write_two_frames(writer);
+    StateWriter save(
+        [&](const void* data, std::size_t size) { state.append(static_cast<const char*>(data), size); });
+    writer.save(save);
+    for (int k = 0; k < 40; ++k) writer.write(frame(2.0 + k, {grain(1, {9, 9, 9}, 0.5, 1)}), 400 + k);
+  }
+  for (int round = 0; round < 2; ++round) {  // and killed again at once
+    std::size_t at = 0;
+    StateReader load(
+        [&](void* data, std::size_t size) {
+          std::copy_n(state.data() + at, size, static_cast<char*>(data));
+          at += size;
+        },
+        state.size());
+    TrajectoryWriter writer(path, all_grains(), load);
+    EXPECT_EQ(writer.frames(), 2);
+    writer.write(frame(1.5, {grain(7, {0, 1, 4}, 1.0, 2)}), 300);
+  }
+  const Reader expected(whole), got(path);
+  for (const char* name :
+       {"position/value", "velocity/value", "diameter/value", "position/time", "position/step"}) {
+    const std::string set = std::string("particles/rock/") + name;
+    EXPECT_EQ(got.shape(set.c_str()), expected.shape(set.c_str())) << name;
+    EXPECT_EQ(got.values(set.c_str()), expected.values(set.c_str())) << name;
+  }
+  for (const char* ending : {".xyz", ".xdmf"})
+    EXPECT_EQ(text_of(std::filesystem::path(path).replace_extension(ending)),
+              text_of(std::filesystem::path(whole).replace_extension(ending)));
+  TrajectoryWriter::forget_saved(path);
+  EXPECT_FALSE(std::filesystem::exists(path.string() + ".undo"));
 }
 
 TEST(Trajectory, FollowsTheH5mdLayout) {

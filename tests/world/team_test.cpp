@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <new>
+#include <vector>
+
 namespace scree {
 namespace {
 
@@ -21,6 +24,20 @@ TEST_P(Teams, DoEveryIndexOnceJobAfterJob) {
     int jobs = 0;
     for (int job = 0; job < 20000; ++job) jobs += job % 51 > k ? 1 : 0;
     EXPECT_EQ(done[static_cast<std::size_t>(k)], jobs * (k + 1)) << k;
+  }
+}
+
+TEST_P(Teams, TellWhatABodyThrowsAndWorkOn) {
+  Team team(GetParam());
+  for (int job = 0; job < 200; ++job) {
+    EXPECT_THROW(team.run(20,
+                          [&](int k) {
+                            if (k == job % 20) throw std::bad_alloc();
+                          }),
+                 std::bad_alloc);
+    std::vector<int> done(20);
+    team.run(20, [&](int k) { done[static_cast<std::size_t>(k)] = 1; });
+    EXPECT_EQ(done, std::vector<int>(20, 1));
   }
 }
 

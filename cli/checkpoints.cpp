@@ -1,0 +1,116 @@
+#include "cli/checkpoints.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kKept = 2;
+constexpr const char kName[] = "checkpoint_";
+constexpr const char kFinished[] = "finished";
+
+// By number, rising.
+std::vector<std::pair<int, fs::path>> checkpoints_in(const fs::path& folder) {
+  std::vector<std::pair<int, fs::path>> found;
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, none)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(kName) || name.ends_with(".part")) continue;
+    const std::string digits = name.substr(sizeof kName - 1);
+    if (digits.empty() || digits.size() > 9 || digits.find_first_not_of("0123456789") != std::string::npos)
+      continue;
+    found.emplace_back(std::stoi(digits), entry.path());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+}  // namespace
+
+Checkpoints::Checkpoints(fs::path folder, scree::CheckpointHeader header, double minutes)
+    : folder_(std::move(folder)), header_(std::move(header)), minutes_(minutes) {}
+
+std::unique_ptr<scree::CheckpointReader> Checkpoints::open(
+    const fs::path& file, const std::function<void(const std::string&)>& warn) const {
+  std::unique_ptr<scree::CheckpointReader> reader;
+  try {
+    reader = std::make_unique<scree::CheckpointReader>(file);
+  } catch (const scree::DamagedCheckpoint& damage) {
+    warn(damage.what());
+    return nullptr;
+  }
+  const scree::CheckpointHeader& header = reader->header();
+  if (header.program != header_.program)
+    throw std::runtime_error(
+        fmt::format("{}: made by {}, this is {}: the numbers may differ. Resume with that program, or start "
+                    "anew from scenario.yaml with another --out",
+                    file.string(), header.program, header_.program));
+  if (header.scenario != header_.scenario || header.seed != header_.seed)
+    throw std::runtime_error(
+        fmt::format("{}: made of another scenario or seed. Start anew with another --out", file.string()));
+  return reader;
+}
+
+std::unique_ptr<scree::CheckpointReader> Checkpoints::newest(
+    const std::function<void(const std::string&)>& warn) const {
+  const auto found = checkpoints_in(folder_);
+  for (auto one = found.rbegin(); one != found.rend(); ++one) {
+    if (auto reader = open(one->second, warn)) return reader;
+    std::error_code ignored;
+    fs::remove(one->second, ignored);  // it must not be one of the two that are kept
+  }
+  return nullptr;
+}
+
+std::unique_ptr<scree::CheckpointReader> Checkpoints::finished(
+    const std::function<void(const std::string&)>& warn) const {
+  const fs::path file = folder_ / kFinished;
+  std::error_code none;
+  return fs::exists(file, none) ? open(file, warn) : nullptr;
+}
+
+bool Checkpoints::due() const {
+  return on() && std::chrono::steady_clock::now() - last_ >= std::chrono::duration<double>(60 * minutes_);
+}
+
+void Checkpoints::save(double time, const std::function<void(scree::StateWriter&)>& state) {
+  last_ = std::chrono::steady_clock::now();  // also of one that fails: the next try is not at once
+  fs::create_directories(folder_);
+  auto found = checkpoints_in(folder_);
+  const int number = found.empty() ? 1 : found.back().first + 1;
+  header_.time = time;
+  const fs::path file = folder_ / fmt::format("{}{:06}", kName, number);
+  scree::write_checkpoint(file, header_, state);
+  found.emplace_back(number, file);
+  std::error_code ignored;
+  for (std::size_t k = 0; k + kKept < found.size(); ++k) fs::remove(found[k].second, ignored);
+  last_ = std::chrono::steady_clock::now();
+}
+
+void Checkpoints::finish(double time, const std::function<void(scree::StateWriter&)>& outcome) {
+  fs::create_directories(folder_);
+  header_.time = time;
+  scree::write_checkpoint(folder_ / kFinished, header_, outcome);
+  std::error_code ignored;
+  for (const auto& [number, file] : checkpoints_in(folder_)) fs::remove(file, ignored);
+}
+
+bool Checkpoints::any_in(const fs::path& folder) {
+  std::error_code none;
+  return fs::exists(folder / kFinished, none) || !checkpoints_in(folder).empty();
+}
+
+void Checkpoints::remove_from(const fs::path& folder) {
+  std::error_code ignored;
+  fs::remove(folder / kFinished, ignored);
+  for (const auto& [number, file] : checkpoints_in(folder)) fs::remove(file, ignored);
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))  // of one that was killed
+    if (const std::string name = entry.path().filename().string();
+        (name.starts_with(kName) || name.starts_with(kFinished)) && name.ends_with(".part"))
+      fs::remove(entry.path(), ignored);
+  fs::remove(folder, ignored);  // if that was all
+}

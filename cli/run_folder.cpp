@@ -1,0 +1,81 @@
+#include "cli/run_folder.h"
+
+#define XXH_INLINE_ALL
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/ensemble/run_request.h"
+#include "scree_version.h"
+#include "sim/io/text_file.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path record_in(const fs::path& folder) {
+  return folder / "resume.json";
+}
+
+}  // namespace
+
+std::string program_version() {
+  return fmt::format("scree {} ({})", scree::results_version(), SCREE_REVISION);
+}
+
+std::string scenario_hash(const scree::Scenario& scenario) {
+  const std::string key = scree::run_request(scenario, 0, scree::results_version(), asset_dir()).key;
+  const std::string text = key + "\n" + scenario.resolved_yaml;
+  const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+void write_record(const fs::path& folder, const RunRecord& r) {
+  const nlohmann::ordered_json json = {
+      {"program", r.program}, {"scenario", r.scenario},         {"name", r.name},
+      {"seeds", r.seeds},     {"summary_only", r.summary_only}, {"checkpoint_minutes", r.checkpoint_minutes}};
+  scree::write_text_file(record_in(folder), json.dump(2) + "\n");
+}
+
+RunRecord read_record(const fs::path& folder) {
+  std::ifstream in(record_in(folder));
+  if (!in) {
+    if (fs::exists(folder / "summary.json"))
+      throw std::runtime_error(
+          fmt::format("{}: this run has come to its end; there is nothing to resume", folder.string()));
+    throw std::runtime_error(
+        fmt::format("{}: no run that can be resumed (it has no resume.json)", folder.string()));
+  }
+  try {
+    const nlohmann::json json = nlohmann::json::parse(in);
+    return {json.at("program"), json.at("scenario"),     json.at("name"),
+            json.at("seeds"),   json.at("summary_only"), json.at("checkpoint_minutes")};
+  } catch (const nlohmann::json::exception&) {
+    throw std::runtime_error(fmt::format("{}: damaged; start anew from scenario.yaml with another --out",
+                                         record_in(folder).string()));
+  }
+}
+
+void remove_record(const fs::path& folder) {
+  std::error_code ignored;
+  fs::remove(record_in(folder), ignored);
+}
+
+FolderLock::FolderLock(const fs::path& folder)
+    : file_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (file_ < 0 || flock(file_, LOCK_EX | LOCK_NB) == 0) return;  // a file system without locks has none
+  const bool taken = errno == EWOULDBLOCK;
+  close(file_);
+  file_ = -1;
+  if (taken) throw std::runtime_error(fmt::format("{}: another scree works in it", folder.string()));
+}
+
+FolderLock::~FolderLock() {
+  if (file_ >= 0) close(file_);
+}
