@@ -145,8 +145,7 @@ Picture draw_residuals(const DiagnosisOutcome& o, const fs::path& folder) {
     for (std::size_t k = 0; k < n; ++k) {
       const auto at = static_cast<Eigen::Index>(k);
       const SimulatedModel& m = *series[s].model;
-      const double u = std::sqrt(d.covariance(at, at) + m.std[at] * m.std[at] / m.runs);
-      const double z = (d.measured.values[k].value - m.mean[at]) / u;
+      const double z = standard_residual(d, m, at);
       most = std::max(most, std::abs(z) * 1.05);
       script += fmt::format("{:.6g} {}\n", z, n - k);
     }
@@ -211,18 +210,17 @@ std::string where_tables(const Diagnosis& d) {
 std::string numbers_table(const DiagnosisOutcome& o) {
   const Diagnosis& d = o.diagnosis;
   std::string rows;
-  const auto cell = [&](const std::optional<SimulatedModel>& m, Eigen::Index k, double measured) {
+  const auto cell = [&](const std::optional<SimulatedModel>& m, Eigen::Index k) {
     if (!m) return std::string("<td>–</td><td>–</td>");
-    const double u = std::sqrt(d.covariance(k, k) + m->std[k] * m->std[k] / m->runs);
-    return fmt::format("<td>{}</td><td>{:+.1f}</td>", number_text(m->mean[k]), (measured - m->mean[k]) / u);
+    return fmt::format("<td>{}</td><td>{:+.1f}</td>", number_text(m->mean[k]), standard_residual(d, *m, k));
   };
   for (std::size_t i = 0; i < d.measured.values.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const MeasuredValue& value = d.measured.values[i];
     rows += fmt::format("<tr><td class=\"word\">{}</td><td>{}</td><td>{}</td>{}{}{}</tr>\n",
                         html_escaped(value.label), number_text(value.value),
-                        number_text(std::sqrt(d.covariance(k, k))), cell(o.nominal, k, value.value),
-                        cell(o.calibrated, k, value.value), cell(o.augmented, k, value.value));
+                        number_text(std::sqrt(d.covariance(k, k))), cell(o.nominal, k), cell(o.calibrated, k),
+                        cell(o.augmented, k));
   }
   return fmt::format(
       "<h2>Every number</h2>\n<p>z: measured less simulated, over its standard deviation.</p>\n<div "
@@ -291,6 +289,12 @@ std::string alike_table(const DiagnosisOutcome& o) {
 }
 
 }  // namespace
+
+double standard_residual(const Diagnosis& d, const SimulatedModel& model, Eigen::Index k) {
+  const double scatter = model.std[k] * model.std[k] / model.runs;
+  return (d.measured.values[static_cast<std::size_t>(k)].value - model.mean[k]) /
+         std::sqrt(d.covariance(k, k) + scatter);
+}
 
 std::vector<std::pair<std::string, double>> values_at(const ModelSpace& space, const ModelPoint& point) {
   std::vector<std::pair<std::string, double>> values;
