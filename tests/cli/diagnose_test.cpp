@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "scree_version.h"
 #include "tests/cli/call.h"
 
 namespace {
