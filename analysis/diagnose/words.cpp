@@ -27,12 +27,17 @@ std::string base_in_words(const ModelSpace& space, const Judgement& judgement) {
   return text;
 }
 
-std::string largest_differences(const Diagnosis& d) {
+// The three numbers that the model misses most, of those beyond two standard deviations.
+std::string largest_differences(const DiagnosisOutcome& o) {
+  std::vector<std::pair<double, std::string>> all;
+  for (std::size_t k = 0; k < o.diagnosis.measured.values.size(); ++k)
+    all.emplace_back(standard_residual(o.diagnosis, o.nominal, static_cast<Eigen::Index>(k)),
+                     o.diagnosis.measured.values[k].label);
+  std::sort(all.begin(), all.end(),
+            [](const auto& x, const auto& y) { return std::abs(x.first) > std::abs(y.first); });
   std::string text;
-  int count = 0;
-  for (const Disagreement& each : d.numbers)
-    if (each.significant && count < 3)
-      text += fmt::format("{}{} ({:+.1f})", count++ == 0 ? "" : ", ", each.where, each.z);
+  for (std::size_t k = 0; k < std::min<std::size_t>(all.size(), 3) && std::abs(all[k].first) > 2; ++k)
+    text += fmt::format("{}{} ({:+.1f})", k == 0 ? "" : ", ", all[k].second, all[k].first);
   return text;
 }
 
@@ -100,11 +105,12 @@ std::string counted(const DiagnosisOutcome& o) {
       "As it is, the model misses {} of the {} measured numbers by more than two standard "
       "deviations",
       outside(o, o.nominal), n);
-  if (const std::string where = largest_differences(d); !where.empty()) text += "; most of all " + where;
+  if (const std::string where = largest_differences(o); !where.empty()) text += "; most of all " + where;
   if (o.calibrated) text += fmt::format(". Its best parameters leave {}", outside(o, *o.calibrated));
   if (o.augmented) text += fmt::format("; with what was found {}", outside(o, *o.augmented));
-  return text +
-         fmt::format(". Chance alone leaves about {:.0f}.", std::ceil(kOutsideTwo * static_cast<double>(n)));
+  const double by_chance = std::round(kOutsideTwo * static_cast<double>(n));
+  return text + (by_chance > 0 ? fmt::format(". Chance alone leaves about {:.0f}.", by_chance)
+                               : ". Chance alone leaves none.");
 }
 
 // The tests behind it.
@@ -162,7 +168,7 @@ std::string gap_in_words(const Gap& gap) {
 }
 
 std::vector<std::string> diagnosis_in_words(const DiagnosisOutcome& o) {
-  std::vector<std::string> lines{answer(o) + " " + counted(o), tested(o)};
+  std::vector<std::string> lines{answer(o), counted(o), tested(o)};
   if (o.held_out_calibrated && o.held_out_augmented)
     lines.push_back(fmt::format(
         "Left out of the fit in turn and foretold ({}): with re-calibration alone chi-square {} on {}, with "
