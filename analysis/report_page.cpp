@@ -39,7 +39,7 @@ td:not(.word), td small { white-space: nowrap; }
 td small { color: var(--soft); display: block; font-size: .8em; }
 tbody tr:nth-child(even) { background: var(--shade); }
 .close { background: var(--close); } .agrees { background: var(--agrees); }
-.differs { background: var(--differs); } .unknown { background: var(--unknown); }
+.differs, tbody tr.differs:nth-child(n) { background: var(--differs); } .unknown { background: var(--unknown); }
 figure { margin: 1.4rem 0; break-inside: avoid; }
 figure img { display: block; width: 100%; height: auto; background: #fff; border: 1px solid var(--line);
   border-radius: 4px; padding: .5rem; }

@@ -11,6 +11,7 @@
 #include "cli/run_through.h"
 #include "sim/io/text_file.h"
 #include "sim/material/input_bytes.h"
+#include "sim/scene/scenario_values.h"
 
 namespace fs = std::filesystem;
 
@@ -43,6 +44,7 @@ void print_plan(const scree::DiagnosisSession& session, const scree::DiagnosisMo
   }
   fmt::print("{} simulations, {} of them in the store; then up to {} more of what is named\n", all, there,
              4 * 2 * model.simulations.check * static_cast<int>(session.design().size()));
+  for (const std::string& note : session.data().notes) fmt::print("note: {}\n", note);
   if (known)
     fmt::print("about {} of one core are left\n", scree::spell_duration(left));
   else
@@ -92,7 +94,8 @@ int run_diagnose(const DiagnoseOptions& options) {
   }
   for (const std::string& name : options.without)
     if (scree::find_effect(name) == nullptr) {
-      fmt::print(stderr, "--without {}: no such effect\n", name);
+      fmt::print(stderr, "--without {}: no such effect{}\n", name,
+                 scree::suggestion(name, loaded.model.effects));
       return kBadInput;
     }
   scree::DiagnosisSession session(loaded.model, scree::join_datasets(datasets), options.without, asset_dir());

@@ -297,8 +297,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 1024));
   twin_app->add_flag("--force", twin.force, "Write into --out even if it holds something");
   twin_app->footer(
-      "\nExamples:\n  scree twin scenarios/models/small_laboratory.yaml\n"
-      "  scree twin scenarios/models/small_laboratory.yaml --effect cohesion --strength strong --seed 7 "
+      "\nExamples:\n  scree twin scenarios/models/small_dump.yaml\n"
+      "  scree twin scenarios/models/small_dump.yaml --effect cohesion --strength strong --seed 7 "
       "--out "
       "measured\n");
 

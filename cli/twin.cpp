@@ -28,6 +28,7 @@ bool draw(const TwinOptions& options, const scree::DiagnosisModel& model, scree:
   for (const std::string& name : asked) {
     if (name == "none") continue;
     if (name == "random") {
+      if (options.engine == "impulse") continue;  // has no effects
       // Of all effects and none.
       const auto pick =
           static_cast<std::size_t>(random.uniform() * static_cast<double>(model.effects.size() + 1));

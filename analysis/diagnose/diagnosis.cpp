@@ -288,8 +288,11 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return ones[a].evidence.log_evidence > ones[b].evidence.log_evidence;
   });
+  // Two effects are for what none explains alone.
+  const bool one_explains =
+      std::any_of(ones.begin(), ones.end(), [](const Judgement& j) { return j.gap.p > kNothingAbove; });
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  if (d.calibration.gap.p <= kFitsAbove)
+  if (d.calibration.gap.p <= kFitsAbove && !one_explains)
     for (std::size_t k = 0; k < std::min(kPairsOfBest, count); ++k)
       for (std::size_t e = 0; e < count; ++e) {
         const std::pair<std::size_t, std::size_t> pair(std::min(order[k], e), std::max(order[k], e));

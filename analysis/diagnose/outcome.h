@@ -30,6 +30,9 @@ struct DiagnosisOutcome {
   std::vector<std::string> notes;
 };
 
+/// Measured less simulated, over its standard deviation, of a measured value.
+double standard_residual(const Diagnosis& diagnosis, const SimulatedModel& model, Eigen::Index value);
+
 /// The answer in plain words: a paragraph, then a line each of what else there is to say.
 std::vector<std::string> diagnosis_in_words(const DiagnosisOutcome& outcome);
 

@@ -135,9 +135,9 @@ Picture draw_residuals(const DiagnosisOutcome& o, const fs::path& folder) {
     const char *name, *style;
     const SimulatedModel* model;
   };
-  std::vector<Series> series{{"nominal", "pt 7 ps 0.7 lc rgb '#999999'", &o.nominal}};
-  if (o.calibrated) series.push_back({"re-calibrated", "pt 5 ps 0.7 lc rgb '#d95f02'", &*o.calibrated});
-  if (o.augmented) series.push_back({"with the effect", "pt 9 ps 0.9 lc rgb '#1b6ca8'", &*o.augmented});
+  std::vector<Series> series{{"as it is", "pt 7 ps 0.7 lc rgb '#999999'", &o.nominal}};
+  if (o.calibrated) series.push_back({"best parameters", "pt 5 ps 0.7 lc rgb '#d95f02'", &*o.calibrated});
+  if (o.augmented) series.push_back({"with what was found", "pt 9 ps 0.9 lc rgb '#1b6ca8'", &*o.augmented});
   std::string script = chart_terminal(760, 120 + 22 * static_cast<int>(n)), tics, plots;
   double most = 3;
   for (std::size_t s = 0; s < series.size(); ++s) {
@@ -145,8 +145,7 @@ Picture draw_residuals(const DiagnosisOutcome& o, const fs::path& folder) {
     for (std::size_t k = 0; k < n; ++k) {
       const auto at = static_cast<Eigen::Index>(k);
       const SimulatedModel& m = *series[s].model;
-      const double u = std::sqrt(d.covariance(at, at) + m.std[at] * m.std[at] / m.runs);
-      const double z = (d.measured.values[k].value - m.mean[at]) / u;
+      const double z = standard_residual(d, m, at);
       most = std::max(most, std::abs(z) * 1.05);
       script += fmt::format("{:.6g} {}\n", z, n - k);
     }
@@ -164,10 +163,12 @@ Picture draw_residuals(const DiagnosisOutcome& o, const fs::path& folder) {
       -most, most, static_cast<double>(n) + 0.7, tics, plots);
   const fs::path file = folder / "residuals.svg";
   run_gnuplot(script, file);
-  return {"Before and after", file,
-          "Every measured number against the full simulator: nominal parameters, best parameters without any "
-          "effect, "
-          "and with the effect named. Within the band of two standard deviations a number agrees."};
+  return {
+      "Before and after", file,
+      fmt::format("Every measured number against the full simulator: as it is{}{}. Within the band of two "
+                  "standard deviations a number agrees.",
+                  o.calibrated ? ", with its best parameters" : "",
+                  o.augmented ? ", and with what was found" : "")};
 }
 
 std::string candidates_table(const DiagnosisOutcome& o) {
@@ -211,26 +212,28 @@ std::string where_tables(const Diagnosis& d) {
 std::string numbers_table(const DiagnosisOutcome& o) {
   const Diagnosis& d = o.diagnosis;
   std::string rows;
-  const auto cell = [&](const std::optional<SimulatedModel>& m, Eigen::Index k, double measured) {
-    if (!m) return std::string("<td>–</td><td>–</td>");
-    const double u = std::sqrt(d.covariance(k, k) + m->std[k] * m->std[k] / m->runs);
-    return fmt::format("<td>{}</td><td>{:+.1f}</td>", number_text(m->mean[k]), (measured - m->mean[k]) / u);
-  };
+  // Two columns a model that there is.
+  std::vector<std::pair<const char*, const SimulatedModel*>> models{{"As it is", &o.nominal}};
+  if (o.calibrated) models.emplace_back("Best parameters", &*o.calibrated);
+  if (o.augmented) models.emplace_back("With what was found", &*o.augmented);
+  std::string heads;
+  for (const auto& each : models) heads += fmt::format("<th>{}</th><th>z</th>", each.first);
   for (std::size_t i = 0; i < d.measured.values.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const MeasuredValue& value = d.measured.values[i];
-    rows += fmt::format("<tr><td class=\"word\">{}</td><td>{}</td><td>{}</td>{}{}{}</tr>\n",
-                        html_escaped(value.label), number_text(value.value),
-                        number_text(std::sqrt(d.covariance(k, k))), cell(o.nominal, k, value.value),
-                        cell(o.calibrated, k, value.value), cell(o.augmented, k, value.value));
+    rows += fmt::format("<tr><td class=\"word\">{}</td><td>{}</td><td>{}</td>", html_escaped(value.label),
+                        number_text(value.value), number_text(std::sqrt(d.covariance(k, k))));
+    for (const auto& each : models)
+      rows += fmt::format("<td>{}</td><td>{:+.1f}</td>", number_text(each.second->mean[k]),
+                          standard_residual(d, *each.second, k));
+    rows += "</tr>\n";
   }
   return fmt::format(
       "<h2>Every number</h2>\n<p>z: measured less simulated, over its standard deviation.</p>\n<div "
-      "class=\"wide\"><table><thead><tr><th class=\"word\">Number</th><th>Measured</th><th>Uncertainty</th>"
-      "<th>Nominal</th><th>z</th><th>Re-calibrated</th><th>z</th><th>With the "
-      "effect</th><th>z</th></tr></thead>"
-      "<tbody>\n{}</tbody></table></div>\n",
-      rows);
+      "class=\"wide\"><table><thead><tr><th "
+      "class=\"word\">Number</th><th>Measured</th><th>Uncertainty</th>{}</tr>"
+      "</thead><tbody>\n{}</tbody></table></div>\n",
+      heads, rows);
 }
 
 std::string held_out_table(const DiagnosisOutcome& o) {
@@ -292,6 +295,12 @@ std::string alike_table(const DiagnosisOutcome& o) {
 
 }  // namespace
 
+double standard_residual(const Diagnosis& d, const SimulatedModel& model, Eigen::Index k) {
+  const double scatter = model.std[k] * model.std[k] / model.runs;
+  return (d.measured.values[static_cast<std::size_t>(k)].value - model.mean[k]) /
+         std::sqrt(d.covariance(k, k) + scatter);
+}
+
 std::vector<std::pair<std::string, double>> values_at(const ModelSpace& space, const ModelPoint& point) {
   std::vector<std::pair<std::string, double>> values;
   for (std::size_t k = 0; k < space.base.size(); ++k)
@@ -310,7 +319,9 @@ void write_diagnosis(const std::string& title, const DiagnosisOutcome& o, const 
   fs::create_directories(pictures);
   const std::vector<std::string> words = diagnosis_in_words(o);
   std::string body;
-  for (const std::string& line : words) body += fmt::format("<p>{}</p>\n", html_escaped(line));
+  for (std::size_t k = 0; k < words.size(); ++k)
+    body += k == 0 ? fmt::format("<p><strong>{}</strong></p>\n", html_escaped(words[k]))
+                   : fmt::format("<p>{}</p>\n", html_escaped(words[k]));
   body += figure(draw_residuals(o, pictures)) + candidates_table(o) + where_tables(o.diagnosis) +
           alike_table(o) + held_out_table(o) + numbers_table(o);
   if (!o.notes.empty()) {
@@ -321,7 +332,7 @@ void write_diagnosis(const std::string& title, const DiagnosisOutcome& o, const 
   write_text_file(
       folder / "report.html",
       html_page(title,
-                fmt::format("{} measured numbers, {} effects looked for, {} simulations",
+                fmt::format("Measured numbers: {}, effects looked for: {}, simulations: {}",
                             o.diagnosis.measured.values.size(), o.space.effects.size(), o.simulations),
                 body));
 }

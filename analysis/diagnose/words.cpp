@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "analysis/report_text.h"
 
 namespace scree {
 namespace {
+
+constexpr double kOutsideTwo = 0.0455;  // share of a normal distribution beyond two standard deviations
 
 // The last part of a key: bond_number.
 std::string short_key(const std::string& key) {
@@ -24,64 +27,113 @@ std::string base_in_words(const ModelSpace& space, const Judgement& judgement) {
   return text;
 }
 
-std::string largest_differences(const Diagnosis& d) {
+// The three numbers that the model misses most, of those beyond two standard deviations.
+std::string largest_differences(const DiagnosisOutcome& o) {
+  std::vector<std::pair<double, std::string>> all;
+  for (std::size_t k = 0; k < o.diagnosis.measured.values.size(); ++k)
+    all.emplace_back(standard_residual(o.diagnosis, o.nominal, static_cast<Eigen::Index>(k)),
+                     o.diagnosis.measured.values[k].label);
+  std::sort(all.begin(), all.end(),
+            [](const auto& x, const auto& y) { return std::abs(x.first) > std::abs(y.first); });
   std::string text;
-  int count = 0;
-  for (const Disagreement& each : d.numbers)
-    if (each.significant && count < 3)
-      text += fmt::format("{}{} ({:+.1f} standard deviations)", count++ == 0 ? "" : ", ", each.where, each.z);
+  for (std::size_t k = 0; k < std::min<std::size_t>(all.size(), 3) && std::abs(all[k].first) > 2; ++k)
+    text += fmt::format("{}{} ({:+.1f})", k == 0 ? "" : ", ", all[k].second, all[k].first);
   return text;
 }
 
-std::string paragraph(const DiagnosisOutcome& o) {
+int outside(const DiagnosisOutcome& o, const SimulatedModel& model) {
+  int count = 0;
+  for (Eigen::Index k = 0; k < model.mean.size(); ++k)
+    count += std::abs(standard_residual(o.diagnosis, model, k)) > 2 ? 1 : 0;
+  return count;
+}
+
+// "cohesion between grains (cohesion)"
+std::string title_of(const ModelSpace& space, const Hypothesis& hypothesis) {
+  std::string text;
+  for (const std::size_t e : hypothesis.effects)
+    text +=
+        fmt::format("{}{} ({})", text.empty() ? "" : " and ", space.effects[e].title, space.effects[e].name);
+  return text;
+}
+
+// What is said first: the answer.
+std::string answer(const DiagnosisOutcome& o) {
+  const Diagnosis& d = o.diagnosis;
+  using Kind = DiagnosisVerdict::Kind;
+  switch (d.verdict.kind) {
+    case Kind::nothing:
+      return fmt::format(
+          "Nothing is missing that these {} numbers could show: the model as it is agrees with them.",
+          d.measured.values.size());
+    case Kind::calibration:
+      return fmt::format("No effect needs to be added: other parameters explain the {} numbers. {}.",
+                         d.measured.values.size(), base_in_words(o.space, d.calibration));
+    case Kind::unknown:
+      return fmt::format(
+          "Something is missing that is not among the {} effects looked for: none of them explains the data, "
+          "alone or with a second one.",
+          o.space.effects.size());
+    case Kind::effect: {
+      const Judgement& first = d.judgements[d.verdict.named.front()];
+      return fmt::format("What is missing is {}{}, with probability {}: {}.",
+                         first.probability >= kSureAbove ? "" : "most probably ",
+                         title_of(o.space, first.hypothesis), decimals_text(first.probability, 2),
+                         values_in_words(o.space, first));
+    }
+    case Kind::group: {
+      std::string names;
+      for (const std::size_t k : d.verdict.named)
+        names +=
+            fmt::format("{}{} ({})", names.empty() ? "" : ", ", name_of(o.space, d.judgements[k].hypothesis),
+                        decimals_text(d.judgements[k].probability, 2));
+      return fmt::format(
+          "Something is missing, and these data cannot tell which of the following (probability): {}. With "
+          "the "
+          "first: {}.",
+          names, values_in_words(o.space, d.judgements[d.verdict.named.front()]));
+    }
+  }
+  return "";
+}
+
+// How far the numbers are off, counted.
+std::string counted(const DiagnosisOutcome& o) {
   const Diagnosis& d = o.diagnosis;
   const std::size_t n = d.measured.values.size();
-  using Kind = DiagnosisVerdict::Kind;
-  if (d.verdict.kind == Kind::nothing)
-    return fmt::format(
-        "Nothing is missing that these {} numbers could show: the model with its nominal parameters agrees "
-        "with them ({}).",
-        n, gap_in_words(d.nominal));
-  const std::string where = largest_differences(d);
   std::string text = fmt::format(
-      "The model with its nominal parameters does not agree with the {} measured "
-      "numbers ({}{}{}). ",
-      n, gap_in_words(d.nominal), where.empty() ? "" : "; most of all ", where);
-  if (d.verdict.kind == Kind::calibration)
-    return text + fmt::format("Other parameters explain them ({}): {}. No effect needs to be added.",
-                              gap_in_words(d.calibration.gap), base_in_words(o.space, d.calibration));
-  text +=
-      fmt::format("No choice of its parameters mends that (at best {}). ", gap_in_words(d.calibration.gap));
+      "As it is, the model misses {} of the {} measured numbers by more than two standard "
+      "deviations",
+      outside(o, o.nominal), n);
+  if (const std::string where = largest_differences(o); !where.empty()) text += "; most of all " + where;
+  if (o.calibrated) text += fmt::format(". Its best parameters leave {}", outside(o, *o.calibrated));
+  if (o.augmented) text += fmt::format("; with what was found {}", outside(o, *o.augmented));
+  const double by_chance = std::round(kOutsideTwo * static_cast<double>(n));
+  return text + (by_chance > 0 ? fmt::format(". Chance alone leaves about {:.0f}.", by_chance)
+                               : ". Chance alone leaves none.");
+}
+
+// The tests behind it.
+std::string tested(const DiagnosisOutcome& o) {
+  const Diagnosis& d = o.diagnosis;
+  using Kind = DiagnosisVerdict::Kind;
+  std::string text = "Gap of the model as it is: " + gap_in_words(d.nominal);
+  if (d.verdict.kind == Kind::nothing) return text + ".";
+  text += "; with its best parameters: " + gap_in_words(d.calibration.gap);
   if (d.verdict.kind == Kind::unknown) {
-    std::string best;
     for (const Judgement& j : d.judgements)
-      if (best.empty() && !j.hypothesis.effects.empty())
-        best = fmt::format("the best of them, {}, leaves {}", name_of(o.space, j.hypothesis),
-                           gap_in_words(j.gap));
-    return text + fmt::format(
-                      "Something is missing that is not among the {} effects looked for: none of them "
-                      "explains the data, alone or with a second one ({}).",
-                      o.space.effects.size(), best);
+      if (!j.hypothesis.effects.empty())
+        return text + fmt::format("; with the best of the effects, {}: {}.", name_of(o.space, j.hypothesis),
+                                  gap_in_words(j.gap));
+    return text + ".";
   }
+  if (d.verdict.kind == Kind::calibration) return text + ".";
   const Judgement& first = d.judgements[d.verdict.named.front()];
-  const std::string fit = fmt::format(
-      "With {} it agrees ({}{}): {}.", name_of(o.space, first.hypothesis), gap_in_words(first.gap),
-      o.augmented ? fmt::format("; by {} full simulations of each experiment with fresh seeds {}",
-                                o.augmented->runs, gap_in_words(o.augmented->gap))
-                  : "",
-      values_in_words(o.space, first));
-  if (d.verdict.kind == Kind::effect)
-    return text +
-           fmt::format("What is missing is {}{} (probability {}). ",
-                       first.probability >= kSureAbove ? "" : "most probably ",
-                       name_of(o.space, first.hypothesis), decimals_text(first.probability, 2)) +
-           fit;
-  std::string names;
-  for (const std::size_t k : d.verdict.named)
-    names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", name_of(o.space, d.judgements[k].hypothesis),
-                         decimals_text(d.judgements[k].probability, 2));
-  return text + "Something is missing, and the data cannot tell which of these (probability): " + names +
-         ". " + fit;
+  text += fmt::format("; with {}: {}", name_of(o.space, first.hypothesis), gap_in_words(first.gap));
+  if (o.augmented)
+    text += fmt::format(", by {} full simulations of each experiment with fresh seeds {}", o.augmented->runs,
+                        gap_in_words(o.augmented->gap));
+  return text + ".";
 }
 
 }  // namespace
@@ -116,14 +168,13 @@ std::string gap_in_words(const Gap& gap) {
 }
 
 std::vector<std::string> diagnosis_in_words(const DiagnosisOutcome& o) {
-  std::vector<std::string> lines{paragraph(o)};
+  std::vector<std::string> lines{answer(o), counted(o), tested(o)};
   if (o.held_out_calibrated && o.held_out_augmented)
-    lines.push_back(
-        fmt::format("Numbers that were left out of the fit in turn ({}): re-calibration alone misses them by "
-                    "chi-square {} "
-                    "on {}, the model with the effect by {}.",
-                    fmt::join(o.held_out_augmented->parts, ", "), number_text(o.held_out_calibrated->chi2),
-                    o.held_out_calibrated->count, number_text(o.held_out_augmented->chi2)));
+    lines.push_back(fmt::format(
+        "Left out of the fit in turn and foretold ({}): with re-calibration alone chi-square {} on {}, with "
+        "the effect {}.",
+        fmt::join(o.held_out_augmented->parts, ", "), number_text(o.held_out_calibrated->chi2),
+        o.held_out_calibrated->count, number_text(o.held_out_augmented->chi2)));
   if (!o.next.empty()) {
     std::string text =
         "What would tell them apart best (difference in standard deviations of five repeats): ";

@@ -321,6 +321,11 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   DiagnosisOutcome outcome;
   outcome.space = space_;
   outcome.notes = data_.notes;
+  if (data_.measured.values.size() <= space_.base.size())
+    outcome.notes.push_back(fmt::format(
+        "{} measured numbers and {} uncertain parameters: these alone can explain almost anything, so that "
+        "no effect can be named; measure more",
+        data_.measured.values.size(), space_.base.size()));
   learn_from(design_, run, outcome);
   const std::vector<std::string>& names = data_.measured.experiments;
   const auto learn = [&] {
