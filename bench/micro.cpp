@@ -96,9 +96,10 @@ LaneContact four_of(const Contact* c) {
       to.z_[k] = static_cast<float>(first.z()), to.z_[k + kLanes] = static_cast<float>(second.z());
     };
     set(four.motion.velocity_and_spin, v, w);
-    set(four.history, c[k].history.shear, c[k].history.rolling);
+    set(four.history.springs, c[k].history.shear, c[k].history.rolling);
     four.motion.overlap[k] = c[k].motion.overlap;
   }
+  four.history.further = TwinFloats{};
   four.motion.twist = LaneFloats{};
   four.motion.reduced_mass = Lanes{};
   four.motion.dt = c[0].motion.dt;
