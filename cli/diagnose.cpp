@@ -1,6 +1,8 @@
 // scree diagnose: where simulation and measurement disagree, and which effect the model lacks.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "analysis/diagnose/outcome.h"
 #include "cli/commands.h"
 #include "cli/ensemble/diagnosis_session.h"

@@ -53,8 +53,8 @@ struct DiagnosisModelResult {
 /// The experiments are for twins and may be left out.
 DiagnosisModelResult load_model(const std::filesystem::path& file, const std::filesystem::path& asset_dir);
 
-/// What would be refused only in the middle of a design: reasons why the experiment is no scenario at an end of
-/// the parameters' ranges; none if all is well.
+/// What would be refused only in the middle of a design: reasons why the experiment is no scenario at an end
+/// of the parameters' ranges; none if all is well.
 std::vector<std::string> why_not_simulated(const DiagnosisModel& model, const Dataset::Experiment& experiment,
                                            const std::filesystem::path& asset_dir);
 

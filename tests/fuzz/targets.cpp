@@ -50,17 +50,21 @@ class Scratch {
     folder_ = name;
     fs::current_path(folder_);
     write("drop.yaml",
-          "material: {mu: 0.4, mu_r: 0.4}\ngrading: Lab_18_24mm\nexperiment: {type: drop_test, diameter_m: 0.02, "
+          "material: {mu: 0.4, mu_r: 0.4}\ngrading: Lab_18_24mm\nexperiment: {type: drop_test, diameter_m: "
+          "0.02, "
           "height_m: 0.2}\n");
-    write("dump.yaml", "material: {mu: 0.4, mu_r: 0.4}\ngrading: CM0\nexperiment: {type: end_dump, dumps: 1}\n");
+    write("dump.yaml",
+          "material: {mu: 0.4, mu_r: 0.4}\ngrading: CM0\nexperiment: {type: end_dump, dumps: 1}\n");
     write("observables.csv",
           "experiment,observable,value,unit,std,repeats,uncertainty\ndrop,rebound_height_m,0.1,m,0.04,20,\n"
           "again,rebound_height_m,0.1,m,0.04,20,\n");
-    write("dataset.yaml", "experiments: {drop: {scenario: drop.yaml}, again: {scenario: drop.yaml}}\n"
-                          "observables: observables.csv\ncovariance: covariance.csv\n");
+    write("dataset.yaml",
+          "experiments: {drop: {scenario: drop.yaml}, again: {scenario: drop.yaml}}\n"
+          "observables: observables.csv\ncovariance: covariance.csv\n");
     write("covariance.csv", "name,drop/rebound_height_m\ndrop/rebound_height_m,0.00008\n");
-    write("sweep.yaml", "scenario: drop.yaml\nseeds: [1, 2]\n"
-                        "design: {type: grid, parameters: {material.mu: [0.1, 0.2]}}\n");
+    write("sweep.yaml",
+          "scenario: drop.yaml\nseeds: [1, 2]\n"
+          "design: {type: grid, parameters: {material.mu: [0.1, 0.2]}}\n");
   }
   ~Scratch() {
     std::error_code none;

@@ -7,8 +7,8 @@ namespace scree::fuzz {
 
 struct Target {
   const char* name;
-  const char* file;                        ///< name of the file that the bytes are written to
-  void (*read)(const char* file_name);     ///< of that file, in the scratch folder; null: `parse`
+  const char* file;                     ///< name of the file that the bytes are written to
+  void (*read)(const char* file_name);  ///< of that file, in the scratch folder; null: `parse`
   void (*parse)(std::string_view bytes);
 };
 
