@@ -35,12 +35,10 @@ class Floods {
 
 // Pixels of a height above 0, the highest first, in rows within a height: a counting sort.
 std::vector<int> from_the_top(const cv::Mat1i& height) {
-  double highest = 0;
-  cv::minMaxLoc(height, nullptr, &highest);
-  std::vector<int> begin(static_cast<std::size_t>(highest) + 2, 0);
   const int* h = height[0];
   const int n = height.rows * height.cols;
-  const auto top = static_cast<int>(highest);
+  const int top = *std::max_element(h, h + n);
+  std::vector<int> begin(static_cast<std::size_t>(top) + 2, 0);
   for (int i = 0; i < n; ++i)
     if (h[i] > 0) ++begin[top - h[i] + 1];
   for (std::size_t k = 1; k < begin.size(); ++k) begin[k] += begin[k - 1];
@@ -119,9 +117,9 @@ Labels split_grains(const cv::Mat1b& rock, const cv::Mat1b& edges, double neck) 
   cv::copyMakeBorder(open, framed, 1, 1, 1, 1, cv::BORDER_CONSTANT, 0);
   cv::Mat1f distance;
   cv::distanceTransform(framed, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-  cv::Mat1i height(distance.size());
-  for (int y = 0; y < height.rows; ++y)
-    for (int x = 0; x < height.cols; ++x)
+  cv::Mat1i height(distance.size(), 0);
+  for (int y = 1; y + 1 < height.rows; ++y)
+    for (int x = 1; x + 1 < height.cols; ++x)
       height(y, x) = static_cast<int>(std::lround(distance(y, x) * kSteps));
 
   const int row = height.cols;

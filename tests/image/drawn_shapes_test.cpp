@@ -38,7 +38,9 @@ TEST(DrawnShapes, EllipsesGiveTheirAxesAnglesAndFerets) {
         // The Feret diameters of an ellipse are its axes; half a pixel is what a grid knows at either end.
         EXPECT_NEAR(shape.feret_max, a, std::max(0.02 * a, 1.0));
         EXPECT_NEAR(shape.feret_min, b, std::max(0.02 * b, 1.0));
-        if (ratio < 1) EXPECT_NEAR(shape.angle_deg, angle, 1.5);
+        if (ratio < 1) {
+          EXPECT_NEAR(shape.angle_deg, angle, 1.5);
+        }
         EXPECT_NEAR(shape.elongation(), ratio, 0.02);
         EXPECT_NEAR(shape.roundness(), ratio, 0.04);  // 4 (pi/4 a b) / (pi a^2) = b / a
         // Ramanujan's perimeter of an ellipse.
