@@ -7,6 +7,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include <cerrno>
 #include <fstream>
 #include <nlohmann/json.hpp>
 

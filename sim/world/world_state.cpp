@@ -164,8 +164,14 @@ void RrlinearWorld::state(Stream& stream) {
   shared_state(stream);
   stream.section("rrlinear", 1);
   stream(changed_, repair_due_, dt_, smallest_radius_, longest_step_, last_dt_, steps_to_check_,
-         checks_to_energy_, energy_watch_, friction_, watched_, sum_, growing_, bears_, next_growth_,
-         blocks_due_, pairs_, facets_, sleep_, sorted_spheres_, before_fragments_);
+         checks_to_energy_, energy_watch_, friction_, watched_, growing_, bears_, next_growth_, blocks_due_,
+         pairs_, facets_, sleep_, sorted_spheres_, before_fragments_);
+  // Forces on sleepers are not those of anything: what is added up there depends on the threads.
+  std::vector<ForceSum> sums(sum_.size());
+  for (const int i : sleep_.awake())
+    if (!Stream::kReads && i < static_cast<int>(sums.size())) sums[i] = sum_[i];
+  stream(sums);
+  if (Stream::kReads) sum_ = std::move(sums);
   // Of the blocks only that is wanted which the next step does not find out anew.
   std::vector<std::vector<int>> near_rim;
   for (const BlockWork& work : blocks_) near_rim.push_back(work.near_rim);
