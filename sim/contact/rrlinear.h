@@ -199,7 +199,8 @@ inline ContactForce contact_step(const ContactLaw& law, const ContactStiffness& 
       carried_on<Vec3>(history.shear, n, angle, slip * (k.ks * c.dt), mu * fn, slides, f.loss.sliding);
   history.rolling = carried_on<Vec3>(history.rolling, n, angle, bend * (k.kr * c.dt), law.mu_r * k.rbar * fn,
                                      rolls, f.loss.rolling);
-  f.loss.sliding /= k.ks, f.loss.rolling /= k.kr;
+  if (slides) f.loss.sliding /= k.ks;
+  if (rolls) f.loss.rolling /= k.kr;
 
   Vec3 shear = history.shear;
   if (law.has_dashpots()) {
@@ -242,6 +243,9 @@ struct LaneContactHistory {
   TwinFloats further;              ///< twisting moments (N m, effects alone) beside the power of dashpots (W)
 };
 
+/// Keeps the slip of a step without duration, in which nothing slips, from being 0 / 0.
+inline constexpr float kNoStep = 1e-30f;
+
 /// Friction of four contacts under the plain law, and with what effects make of it.
 struct PlainFriction {
   static constexpr bool kEffects = false;
@@ -274,7 +278,7 @@ SCREE_INLINE BasicContactForce<Lanes> contact_step(const ContactLaw& law, const 
   TwinFloats lost;
   history.springs =
       carried_on(history.springs, nn, twin(angle, angle), slip_and_bend * stiffness, limit, slips, lost);
-  lost /= twin(narrow(k.ks), narrow(k.kr));
+  lost *= static_cast<float>(c.dt) / (stiffness + kNoStep);
 
   BasicContactForce<Lanes> f;
   f.loss.sliding = wide(first_half(lost)), f.loss.rolling = wide(second_half(lost));

@@ -230,7 +230,7 @@ void RrlinearWorld::split_awake() {
 
 void RrlinearWorld::mesh_forces(BlockWork& work, double dt) {
   ContactLaw law = law_;
-  FacetList::Contacts contacts, before;
+  FacetList::Contacts contacts;
   work.near_meshes.clear();
   work.supplied = work.tools = work.pressed = 0;
   for (const int i : work.awake)
@@ -242,7 +242,6 @@ void RrlinearWorld::mesh_forces(BlockWork& work, double dt) {
     const Quad place = spheres_.place[i];
     facets_.load(i, contacts);
     const int had = facets_.count(i);
-    std::copy_n(contacts.begin(), had, before.begin());
     const MeshContactChanges changes =
         update_mesh_contacts(meshes_, facets_.facets(i), place.vec(), place.w, contacts);
     if (changes.born_inside > 0)
@@ -281,18 +280,19 @@ void RrlinearWorld::mesh_forces(BlockWork& work, double dt) {
     const auto jump = [&](double overlap, double other) {
       return 0.5 * (stiffness.kn * overlap * other - law.pull * stiffness.rbar * (overlap + other));
     };
-    std::array<double, kMeshContactSlots> overlap_before{};  // of those that go on
+    std::array<double, kMeshContactSlots> overlap_before;  // of those that go on
     int went_on = 0;
     for (int slot = 0; slot < had; ++slot) {
-      MeshContact& c = before[static_cast<std::size_t>(slot)];
-      const double overlap = c.overlap;
+      const MeshContact& before = facets_.contact(i, slot);
       if (changes.went_on >> slot & 1u) {
-        overlap_before[static_cast<std::size_t>(went_on++)] = overlap;
+        overlap_before[static_cast<std::size_t>(went_on++)] = before.overlap;
         continue;
       }
-      c.overlap = 0;
-      step_of(c);
-      if (const double still = overlap - opened(); still > 0) work.pressed -= jump(overlap, still);
+      MeshContact ended = before;
+      ended.overlap = 0;
+      step_of(ended);
+      if (const double still = before.overlap - opened(); still > 0)
+        work.pressed -= jump(before.overlap, still);
     }
     int count = 0;
     for (MeshContact& c : contacts) {

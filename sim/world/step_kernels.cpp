@@ -140,8 +140,12 @@ SCREE_INLINE EffectFriction friction_of(const StepView& view, const FourContacts
 template <bool kEffects>
 SCREE_INLINE void add_loss(const StepView& view, BasicContactLoss<Lanes> loss, int count,
                            BasicContactLoss<Lanes>& sum) {
-  for (int k = count; k < kLanes; ++k)
-    loss.sliding[k] = loss.rolling[k] = loss.twisting[k] = loss.dashpots[k] = 0;
+  if (count < kLanes) {
+    const LaneMask there = LaneMask{0, 1, 2, 3} < LaneMask{} + count;
+    const Lanes none{};
+    loss.sliding = pick(there, loss.sliding, none), loss.rolling = pick(there, loss.rolling, none);
+    loss.twisting = pick(there, loss.twisting, none), loss.dashpots = pick(there, loss.dashpots, none);
+  }
   sum.sliding += loss.sliding, sum.rolling += loss.rolling;
   if (view.law.has_dashpots()) sum.dashpots += loss.dashpots;
   if constexpr (kEffects) sum.twisting += loss.twisting;
