@@ -48,7 +48,7 @@ std::string text_of(std::uint64_t seed, const std::string& part, const Row& r) {
   std::string text = fmt::format("{},{}", seed, part);
   for (const double value : {r.x, r.z, r.porosity, r.d10, r.d50, r.cu, r.kcm_rel, r.taylor_rel, r.kcm_voids,
                              r.taylor_voids, r.kcm, r.taylor})
-    text += "," + number(value);
+    text += ',' + number(value);
   return text + "\n";
 }
 

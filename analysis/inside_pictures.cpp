@@ -132,7 +132,7 @@ Picture draw_inside(const Inside& inside, const std::filesystem::path& file) {
                   2 * section.half_width),
       "Grey: too few grains for a grading; porosity only where a cell lies wholly inside the pile."};
   if (pores.low < 0)
-    notes.push_back("Porosity below 0: soft grains overlap by more than the voids between them.");
+    notes.emplace_back("Porosity below 0: soft grains overlap by more than the voids between them.");
   const SectionCanvas canvas(frame_of(inside), 3, section, notes);
   std::string script = canvas.head() + cell_blocks(inside, "chi", chi) +
                        cell_blocks(inside, "porosity", porosity) + cell_blocks(inside, "ksat", ksat);

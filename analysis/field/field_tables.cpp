@@ -54,7 +54,7 @@ std::string pictures(const FieldAnalysis& field) {
         const auto found = section->values.find(quantity.name);
         const double value = found == section->values.end() ? NAN : found->second[i];
         any = any || std::isfinite(value);
-        row += "," + number(value);
+        row += ',' + number(value);
       }
       if (any) text += fmt::format("{},{}{}\n", field.pictures[i], section->name, row);
     }

@@ -135,7 +135,7 @@ void write_sweep_csv(const Sweep& sweep, const std::vector<PointResults>& points
   std::string text = kTableOf + sweep.name + "\n";
   for (const std::string& name : sweep.parameters) text += csv_field(name) + ",";
   text += "seed,state,version,wall_seconds";
-  for (const std::string& name : outputs) text += "," + csv_field(name);
+  for (const std::string& name : outputs) text += ',' + csv_field(name);
   text += ",message\n";
   for (const PointResults& p : points)
     for (std::size_t k = 0; k < p.runs.size(); ++k) {
@@ -146,7 +146,7 @@ void write_sweep_csv(const Sweep& sweep, const std::vector<PointResults>& points
                           run && run->wall_seconds > 0 ? fmt::format("{:.1f}", run->wall_seconds) : "");
       for (const std::string& name : outputs)
         text += run && run->outputs.contains(name) ? fmt::format(",{:.8g}", run->outputs.at(name)) : ",";
-      text += "," + csv_field(run ? run->message : "") + "\n";
+      text += ',' + csv_field(run ? run->message : "") + "\n";
     }
   write_text_file(file, text);
 }
