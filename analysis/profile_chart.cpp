@@ -68,7 +68,8 @@ void draw(const ProfileChart& chart, const std::filesystem::path& file) {
   }
   script += chart_terminal(760, 440);
   script += fmt::format(
-      "set title {}\nset xlabel {} offset 0,0.5\nset ylabel {}\nset key bmargin center horizontal Left reverse\nset "
+      "set title {}\nset xlabel {} offset 0,0.5\nset ylabel {}\nset key bmargin center horizontal Left "
+      "reverse\nset "
       "xrange [0:1]\n",
       gnuplot_quoted(chart.title), gnuplot_quoted(chart.x_label), gnuplot_quoted(chart.y_label));
   if (chart.zero_line)

@@ -60,7 +60,8 @@ constexpr Operations of_contact() {
 constexpr Operations kPair = {7, 4, 0, 0};
 // leapfrog(), vectors of four numbers: weight 4 adds, 4 multiplications; two dampings 8 adds, 16
 // multiplications; two steps of velocity 8 adds, 8 multiplications, 8 divisions; place 4 adds, 4
-// multiplications; work of two dampings 16 adds, 8 multiplications; momentum 4 adds, 4 multiplications. way_out2(): 6 adds, 4 multiplications, 1 division.
+// multiplications; work of two dampings 16 adds, 8 multiplications; momentum 4 adds, 4 multiplications.
+// way_out2(): 6 adds, 4 multiplications, 1 division.
 constexpr Operations kSphere = {50, 48, 9, 0};
 
 // Bytes that a step moves, read and written each counted once, as STREAM does, when nothing but the block in

@@ -13,8 +13,8 @@ namespace {
 
 // Prior standard deviations of coefficients, over the size of their group.
 constexpr double kBase1 = 1, kBase2 = 0.5, kBase11 = 0.5, kBase3 = 0.3;
-constexpr double kEffect1 = 1, kEffect2 = 0.6, kEffect3 = 0.4, kSaturating = 0.6, kWithBase = 0.5,
-                 kWithBase2 = 0.3, kWithOther = 0.5, kWithOther2 = 0.3, kTogether = 0.5;
+constexpr double kEffect1 = 1, kEffect2 = 0.6, kEffect3 = 0.4, kWithBase = 0.5, kWithOther = 0.5,
+                 kWithOther2 = 0.3, kTogether = 0.5;
 constexpr double kConstant = 100;  // of the scatter
 
 // Sizes that a group may have, over the scatter; half a unit of a normal prior on their logarithm each way.
@@ -22,15 +22,7 @@ constexpr std::array<double, 9> kSizes{0.02, 0.1, 0.3, 0.7, 1.5, 3, 6, 15, 50};
 constexpr double kLogSizeMean = 0, kLogSizeStd = 2;
 constexpr int kMostSweeps = 6;
 
-// Effects that soon do all they can: x (1 + s) / (|x| + s), linear near 0 and level beyond s. As powers they
-// stand for -1 and -2.
-constexpr std::array<double, 2> kSoon{0.1, 0.4};
-
 double power(double x, int n) {
-  if (n < 0) {
-    const double s = kSoon[static_cast<std::size_t>(-n - 1)];
-    return x * (1 + s) / (std::abs(x) + s);
-  }
   double product = 1;
   for (int k = 0; k < n; ++k) product *= x;
   return product;
@@ -76,12 +68,10 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
     add(kEffect1, 1, 0);
     add(kEffect2, 2, 0);
     add(kEffect3, 3, 0);
-    for (std::size_t s = 1; s <= kSoon.size(); ++s) add(kSaturating, -static_cast<int>(s), 0);
-    for (std::size_t i = 0; i < p; ++i)
-      for (const auto& [prior, order] : {std::pair{kWithBase, 1}, std::pair{kWithBase2, 2}}) {
-        add(prior, order, 0);
-        terms_.back().base_power[i] = 1;
-      }
+    for (std::size_t i = 0; i < p; ++i) {
+      add(kWithBase, 1, 0);
+      terms_.back().base_power[i] = 1;
+    }
     for (std::size_t k = 1; k < space.effects[e].axes.size(); ++k) {
       add(kWithOther, 1, static_cast<int>(k));
       add(kWithOther2, 2, static_cast<int>(k));

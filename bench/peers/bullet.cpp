@@ -38,7 +38,8 @@ struct Ball {
 
 double radius_of(const btCollisionObject* o) {
   const btCollisionShape* s = o->getCollisionShape();
-  return s->getShapeType() == SPHERE_SHAPE_PROXYTYPE ? static_cast<const btSphereShape*>(s)->getRadius() : 0.0;
+  return s->getShapeType() == SPHERE_SHAPE_PROXYTYPE ? static_cast<const btSphereShape*>(s)->getRadius()
+                                                     : 0.0;
 }
 
 // Bullet's rolling friction is a length: mu_r Rbar, with Rbar = R1 on walls.
@@ -107,9 +108,11 @@ int main(int argc, char** argv) {
     shapes.push_back(std::make_unique<btSphereShape>(static_cast<btScalar>(scale * r)));
     btVector3 inertia(0, 0, 0);
     if (!b.fixed) shapes.back()->calculateLocalInertia(static_cast<btScalar>(mass), inertia);
-    btRigidBody::btRigidBodyConstructionInfo ci(static_cast<btScalar>(mass), nullptr, shapes.back().get(), inertia);
+    btRigidBody::btRigidBodyConstructionInfo ci(static_cast<btScalar>(mass), nullptr, shapes.back().get(),
+                                                inertia);
     ci.m_startWorldTransform.setIdentity();
-    ci.m_startWorldTransform.setOrigin(btVector3(static_cast<btScalar>(scale * b.x), static_cast<btScalar>(scale * b.y),
+    ci.m_startWorldTransform.setOrigin(btVector3(static_cast<btScalar>(scale * b.x),
+                                                 static_cast<btScalar>(scale * b.y),
                                                  static_cast<btScalar>(scale * b.z)));
     bodies.push_back(std::make_unique<btRigidBody>(ci));
     dress(*bodies.back());
@@ -123,7 +126,9 @@ int main(int argc, char** argv) {
     ci.m_startWorldTransform.setOrigin(btVector3(0, 0, static_cast<btScalar>(z)));
     bodies.push_back(std::make_unique<btRigidBody>(ci));
     dress(*bodies.back());
-    if (motion) bodies.back()->setCollisionFlags(bodies.back()->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+    if (motion)
+      bodies.back()->setCollisionFlags(bodies.back()->getCollisionFlags() |
+                                       btCollisionObject::CF_KINEMATIC_OBJECT);
     world.addRigidBody(bodies.back().get());
   };
   btTriangleMesh tube;
@@ -135,7 +140,8 @@ int main(int argc, char** argv) {
     const auto corner = [&](int k, double z) {
       const double a = 2 * kPi * k / kFacets;
       return btVector3(static_cast<btScalar>(scale * kBucketRadius * std::cos(a)),
-                       static_cast<btScalar>(scale * kBucketRadius * std::sin(a)), static_cast<btScalar>(scale * z));
+                       static_cast<btScalar>(scale * kBucketRadius * std::sin(a)),
+                       static_cast<btScalar>(scale * z));
     };
     for (int k = 0; k < kFacets; ++k) {
       tube.addTriangle(corner(k, 0), corner(k + 1, 0), corner(k + 1, kBucketHeight));
@@ -167,7 +173,8 @@ int main(int argc, char** argv) {
       std::fprintf(out, "%.6g,%.6g,%.6g,%.6g,0\n", p.x() / scale, p.y() / scale, p.z() / scale, balls[k].d);
   }
   std::fclose(out);
-  std::printf("{\"particles\": %d, \"steps\": %ld, \"cpu_s\": %.3f, \"wall_s\": %.3f}\n", moving, done, cpu_used, wall_used);
+  std::printf("{\"particles\": %d, \"steps\": %ld, \"cpu_s\": %.3f, \"wall_s\": %.3f}\n", moving, done,
+              cpu_used, wall_used);
   std::fflush(nullptr);
   std::_Exit(0);  // taking bodies out one by one takes seconds
 }

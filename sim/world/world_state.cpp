@@ -166,10 +166,14 @@ void RrlinearWorld::state(Stream& stream) {
   stream(changed_, repair_due_, dt_, smallest_radius_, longest_step_, last_dt_, steps_to_check_,
          checks_to_energy_, energy_watch_, friction_, watched_, growing_, bears_, next_growth_, blocks_due_,
          pairs_, facets_, sleep_, sorted_spheres_, before_fragments_);
-  // Forces on sleepers are not those of anything: what is added up there depends on the threads.
+  // Forces on sleepers are not those of anything, nor are the companions of torques: what is added up there
+  // depends on the threads.
   std::vector<ForceSum> sums(sum_.size());
   for (const int i : sleep_.awake())
-    if (!Stream::kReads && i < static_cast<int>(sums.size())) sums[i] = sum_[i];
+    if (!Stream::kReads && i < static_cast<int>(sums.size())) {
+      sums[i] = sum_[i];
+      sums[i].torque.w = 0;
+    }
   stream(sums);
   if (Stream::kReads) sum_ = std::move(sums);
   // Of the blocks only that is wanted which the next step does not find out anew.

@@ -118,11 +118,11 @@ TEST(Posterior, AddsTheEmulatorsUncertaintyToTheTargets) {
   const Emulator emulator(x, y);
   const double value = angle(0.5), uncertainty = 0.5;
   const Posterior posterior({{value, uncertainty, &emulator}}, 1);
-  double surest = 1e300, least_sure = 0;
+  double least_sure = 0;
   const auto log_normal = [&](std::size_t node) {
     const Prediction p = emulator.at(posterior.point(node));
     const double variance = uncertainty * uncertainty + p.std * p.std;
-    surest = std::min(surest, p.std), least_sure = std::max(least_sure, p.std);
+    least_sure = std::max(least_sure, p.std);
     return -0.5 * (std::log(variance) + (p.mean - value) * (p.mean - value) / variance);
   };
   // From the likeliest node outwards, as far as densities are above rounding.
@@ -135,7 +135,6 @@ TEST(Posterior, AddsTheEmulatorsUncertaintyToTheTargets) {
                 log_normal(node) - log_normal(top), 1e-9);
   }
   EXPECT_GT(least_sure, uncertainty);  // there is something to add
-  EXPECT_LT(surest, 0.5 * uncertainty);
 }
 
 TEST(Posterior, AsksWhereItMatters) {

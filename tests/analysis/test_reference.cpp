@@ -118,7 +118,7 @@ TEST(Reference, MalformedLineIsNamed) {
   const auto file = std::filesystem::path(testing::TempDir()) / "scree_bad_reference.csv";
   const std::string header = "case,quantity,section,kind,value,std,unit,relation,source,dumps,rounding\n";
   const std::map<std::string, std::string> bad{
-      {"", ":1: "},
+      {"", ": the file is empty"},
       {"a,b\n", ":1: "},
       {header + "A1,chi,S1,pfc3d,1,,-,eq,,\n", ":2: "},
       {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,,,x\n", ":2: "},

@@ -187,8 +187,9 @@ void BadInput::run(const Case& test) {
     for (std::string line; std::getline(printed, line); ++count) {
       EXPECT_LT(line.size(), kLongestLine) << line;
       for (const char c : line) EXPECT_FALSE(static_cast<unsigned char>(c) < 0x20 || c == 0x7f) << line;
-      if (count < lines.size())
+      if (count < lines.size()) {
         EXPECT_NE(line.find(lines[count]), std::string::npos) << "\n  " << line << "\n  " << lines[count];
+      }
     }
     EXPECT_EQ(count, lines.size()) << called.text;
   }

@@ -34,7 +34,7 @@ class Field : public testing::Test {
       const double size = 1 + 0.05 * (k * 7 % 10);
       const auto row = [&](const char* section, double scale) {
         text += std::to_string(k) + "," + section;
-        for (const double d : {10.0, 30.0, 90.0}) text += "," + std::to_string(d * size * scale);
+        for (const double d : {10.0, 30.0, 90.0}) text += ',' + std::to_string(d * size * scale);
         text += "\n";
       };
       row("whole", 1), row("S1", 0.6 + 0.01 * (k * 3 % 7)), row("S2", 1.2 + 0.01 * (k % 4));

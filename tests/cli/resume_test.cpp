@@ -108,10 +108,11 @@ class ResumeCli : public testing::Test {
     };
     EXPECT_EQ(summary(a), summary(b));
     for (const auto& entry : fs::directory_iterator(folder / a))
-      if (const std::string seed = entry.path().filename().string(); seed.starts_with("seed_"))
+      if (const std::string seed = entry.path().filename().string(); seed.starts_with("seed_")) {
         for (const char* file : {"particles.xyz", "particles.xdmf"})
           EXPECT_TRUE(slurp(folder / a / seed / file) == slurp(folder / b / seed / file))
               << seed << "/" << file;
+      }
     for (const auto& entry : fs::recursive_directory_iterator(folder / b)) {
       const std::string name = entry.path().filename().string();
       EXPECT_TRUE(name.starts_with("particles.") || name.starts_with("s")) << name << " is left";

@@ -9,13 +9,15 @@
 #include "tests/fuzz/targets.h"
 
 namespace scree::fuzz {
-namespace {
 
-class Corpus : public testing::TestWithParam<Target> {};
-
+/// How googletest names a target.
 void PrintTo(const Target& target, std::ostream* out) {
   *out << target.name;
 }
+
+namespace {
+
+class Corpus : public testing::TestWithParam<Target> {};
 
 TEST_P(Corpus, IsReadOrRefused) {
   int files = 0;

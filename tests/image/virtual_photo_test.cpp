@@ -198,7 +198,8 @@ TEST(Scene, FollowsItsGradingAndLiesApart) {
     masses.push_back(grain.mass);
   }
   const PassingCurve curve(diameters, masses);
-  for (const Grading::Point& point : rock().points())
+  const Grading wanted = rock();
+  for (const Grading::Point& point : wanted.points())
     EXPECT_NEAR(curve.passing(point.diameter), point.passing, 0.06);
   double nearest = 1e9;
   for (std::size_t i = 0; i < scene.grains.size(); ++i)

@@ -79,7 +79,7 @@ TEST(Grading, RefusesWhatIsNoCurve) {
 TEST(GradingFile, SaysFileLineAndWhatIsWrong) {
   const auto file = std::filesystem::path(testing::TempDir()) / "scree_bad_grading.csv";
   const std::map<std::string, std::string> bad{
-      {"", ":1: "},
+      {"", ": the file is empty"},
       {"d,p\n", ":1: "},
       {"# c\ndiameter_mm,passing_pct\n8,0\n9;10\n", ":4: "},
       {"diameter_mm,passing_pct\n8,0\n9,ten\n", ":3: "},

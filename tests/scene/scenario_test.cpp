@@ -191,7 +191,7 @@ TEST(Resolved, IsAScenarioThatResolvesToItself) {
 
 TEST(Resolved, PayloadKeepsEveryBitThroughTonnes) {
   const ScenarioFolder folder;
-  for (const char* payload : {"0.07", "0.001", "1.1", "33.333333333333336", "299.99999999999994", "0.29"}) {
+  for (const char* payload : {"0.07", "0.003", "1.1", "33.333333333333336", "299.99999999999994", "0.29"}) {
     const auto first = folder.load(kSmallest, {std::string("experiment.payload_t=") + payload});
     ASSERT_THAT(texts(first), IsEmpty());
     const auto second = folder.load(first.scenario.resolved_yaml);

@@ -187,19 +187,19 @@ TEST(SavedWorlds, HoldEveryMember) {
   EXPECT_EQ(sizeof(GrowingSphere), 16u);
   EXPECT_EQ(sizeof(AwakeEnergy), 32u);
   EXPECT_EQ(sizeof(EnergyWatch), 48u);
-  EXPECT_EQ(sizeof(ContactHistory), 56u);
-  EXPECT_EQ(sizeof(MeshContact), 104u);
+  EXPECT_EQ(sizeof(ContactHistory), 64u);
+  EXPECT_EQ(sizeof(MeshContact), 112u);
   EXPECT_EQ(sizeof(BodyState), 112u);
   EXPECT_EQ(sizeof(MeshBody), 400u);
   EXPECT_EQ(sizeof(Rows<Neighbour>), 56u);
   EXPECT_EQ(sizeof(NeighbourGrid), 200u);
   EXPECT_EQ(sizeof(PairList), 512u);
   EXPECT_EQ(sizeof(FacetList), 256u);
-  EXPECT_EQ(sizeof(Sleep), 160u);
-  EXPECT_EQ(sizeof(BlockWork), 248u);
+  EXPECT_EQ(sizeof(Sleep), 168u);
+  EXPECT_EQ(sizeof(BlockWork), 328u);
   EXPECT_EQ(sizeof(RockWorld) - sizeof(BulletParts) - sizeof(btDiscreteDynamicsWorld) - sizeof(WorldSettings),
-            400u);
-  EXPECT_EQ(sizeof(RrlinearWorld) - sizeof(RockWorld) - sizeof(ContactLaw) - sizeof(Team), 1256u);
+            528u);
+  EXPECT_EQ(sizeof(RrlinearWorld) - sizeof(RockWorld) - sizeof(ContactLaw) - sizeof(Team), 1288u);
 }
 #endif
 
