@@ -236,7 +236,9 @@ int run_run(const RunOptions& options) {
   }
 
   scree::print_result(result);
+  fmt::print("\n{}: {}\n", plan.summary_only ? "summary" : "report",
+             (out / (plan.summary_only ? "summary.json" : "report.html")).string());
   say_how_to_resume();
   if (!worth_resuming) forget_checkpoints(plan);
-  return interrupted ? kInterrupted : std::max<int>(code, kFailed);
+  return interrupted ? kInterrupted : code;
 }

@@ -63,17 +63,19 @@ class LaidGrains {
 
 class Layout {
  public:
-  Layout(const SceneSettings& settings, double largest)
+  Layout(const SceneSettings& settings, const Grading& grading)
       : settings_(settings),
+        gap_(0.5 * grading.min_diameter()),
         random_(settings.seed, 2, RandomPurpose::picture),
-        laid_(settings.width, settings.height, largest) {}
+        laid_(settings.width, settings.height, 1.15 * grading.max_diameter() + grading.min_diameter()) {}
 
   // A place that nobody has, or none after many tries.
   std::optional<Vec3> place(double diameter, double rank, const std::vector<Grain>& before) {
     for (int attempt = 0; attempt < 4000; ++attempt) {
-      Vec3 at = settings_.layout == GrainLayout::touching && !before.empty() && attempt < 3000
-                    ? beside(before, diameter)
-                    : anywhere(diameter);
+      // Most grains that touch join others; some begin clusters of their own all over the picture.
+      const bool joins = settings_.layout == GrainLayout::touching && !before.empty() && attempt < 3000 &&
+                         random_.uniform() < 0.8;
+      Vec3 at = joins ? beside(before, diameter) : anywhere(diameter);
       // Coarse grains are taken more often at the foot, fine ones at the top.
       const double down = at.y() / settings_.height;
       if (random_.uniform() * (1 + std::abs(settings_.segregation)) >
@@ -122,13 +124,14 @@ class Layout {
     bool free = true;
     laid_.around(at.x(), at.y(), [&](const Grain& other) {
       double reach = r + other.diameter / 2;
-      if (settings_.layout == GrainLayout::apart) reach += 0.15 * r + 0.05;
+      if (settings_.layout == GrainLayout::apart) reach += 0.15 * r + gap_;
       free &= std::hypot(at.x() - other.position.x(), at.y() - other.position.y()) >= reach;
     });
     return free;
   }
 
   const SceneSettings& settings_;
+  double gap_;  // between grains that lie apart, m
   Random random_;
   LaidGrains laid_;
 };
@@ -151,7 +154,7 @@ RockScene make_scene(const Grading& grading, const SceneSettings& settings) {
                 diameters[static_cast<std::size_t>(shuffle.uniform() * static_cast<double>(i))]);
   }
   RockScene scene{settings.width, settings.height, {}, {}};
-  Layout layout(settings, largest * 1.15 + 0.1);
+  Layout layout(settings, grading);
   for (const double d : diameters) {
     const auto at = layout.place(d, grading.passing(d), scene.grains);
     if (!at)

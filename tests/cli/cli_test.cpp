@@ -121,7 +121,7 @@ TEST_F(Cli, BadInputIsOneLineAndExitCodeTwo) {
   };
   const Case cases[] = {
       {"", "subcommand"},
-      {"run", "file is required"},
+      {"run", "needs a scenario file"},
       {"run nowhere.yaml", "nowhere.yaml"},
       {"dig scenarios/a1_10m.yaml", "dig"},
       {"compare nowhere", "cannot be read"},
