@@ -15,6 +15,7 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
+#include <new>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -190,7 +191,12 @@ std::size_t read_with_assimp(const fs::path& file, const std::string& extension,
   const aiScene* scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
   // Faces without vertices would abort the program in assimp's triangulation.
   if (scene != nullptr && has_polygons(*scene)) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
-  if (scene == nullptr) throw std::runtime_error(importer.GetErrorString());
+  if (scene == nullptr) {
+    const std::string words = importer.GetErrorString();
+    if (words.find("bad_alloc") != std::string::npos)
+      throw std::bad_alloc();  // of the machine, not of the file
+    throw std::runtime_error(words);
+  }
   if (scene->mRootNode == nullptr) return 0;
   return collect(*scene, *scene->mRootNode, Transform::Identity(), mesh);
 }
@@ -373,6 +379,8 @@ LoadedMesh load_mesh(const fs::path& file, double scale, double max_size) {
   std::size_t left_out = 0;
   try {
     left_out = read_with_assimp(file, extension, mesh);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     return fail(fmt::format(": cannot be read as {} ({})", extension, without_full_stop(error.what())));
   }
