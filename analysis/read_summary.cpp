@@ -24,6 +24,7 @@ StoredRun parse_summary(const std::string& text) {
         throw std::runtime_error("not a summary of scree: a seed is no integer of 0 or more");
       run.seeds.push_back(seed.at("seed").get<std::uint64_t>());
       run.outputs.push_back(seed.at("outputs").get<Outputs>());
+      run.wall_seconds.push_back(seed.value("wall_seconds", 0.0));
     }
     for (const auto& row : json.at("comparison")) {
       const auto name = row.at("case").get<std::string>();

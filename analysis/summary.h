@@ -18,8 +18,9 @@ void write_summary(const RunResult& result, const std::filesystem::path& file);
 struct StoredRun {
   std::string title;
   std::vector<std::uint64_t> seeds;
-  std::vector<Outputs> outputs;    ///< of each seed
-  std::vector<std::string> cases;  ///< reference cases it was compared with
+  std::vector<Outputs> outputs;      ///< of each seed
+  std::vector<double> wall_seconds;  ///< of each seed, 0 where it is not said
+  std::vector<std::string> cases;    ///< reference cases it was compared with
 };
 
 /// Reads the text of a summary.json, or the file. Throws std::runtime_error `what is wrong`, the second with

@@ -73,7 +73,7 @@ std::vector<std::optional<scree::StoredResult>> simulate(
     if (!loaded.errors.empty()) throw std::invalid_argument(loaded.errors.front().text());
     requests.push_back(scree::run_request(loaded.scenario, seed, scree::results_version(), asset_dir()));
   }
-  run_with_progress(requests, store, options.jobs, options.again);
+  run_with_progress(requests, store, options.ensemble);
   if (interrupted) throw scree::CalibrationStopped("interrupted; the same command goes on from here");
   std::vector<std::optional<scree::StoredResult>> results;
   for (const scree::RunRequest& request : requests) results.push_back(store.find(request.key));
@@ -299,7 +299,7 @@ int run_equivalence(const CalibrateOptions& options) {
     return kBadInput;
   }
   if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
-  const std::unique_ptr<scree::ResultsStore> store = open_store(options.store, false);
+  const std::unique_ptr<scree::ResultsStore> store = open_store(options.ensemble.store, false);
   if (!store) return kBadInput;
   std::vector<scree::EquivalenceNode> nodes;
   const int ended = simulations([&] {
@@ -360,7 +360,7 @@ int run_calibrate(const CalibrateOptions& options) {
     return kBadInput;
   }
   if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
-  const std::unique_ptr<scree::ResultsStore> store = open_store(options.store, false);
+  const std::unique_ptr<scree::ResultsStore> store = open_store(options.ensemble.store, false);
   if (!store) return kBadInput;
 
   scree::CalibrationResult result;

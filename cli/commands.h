@@ -22,26 +22,30 @@ struct RunOptions {
       -1;  ///< wall time between checkpoints; 0: none; below: as it began, or the default
 };
 
+/// How the runs of an ensemble are done and kept.
+struct EnsembleOptions {
+  std::filesystem::path store;    ///< empty: runs/store.sqlite
+  int jobs = 0;                   ///< runs side by side; 0: as many as cores
+  bool again = false;             ///< try runs that failed before again
+  double checkpoint_minutes = 5;  ///< wall time between checkpoints of a run; 0: none
+};
+
 struct SweepOptions {
   std::filesystem::path file;
-  std::filesystem::path store;  ///< empty: runs/store.sqlite
-  int jobs = 0;                 ///< runs side by side; 0: as many as cores
-  bool again = false;           ///< try runs that failed before again
-  bool list = false;            ///< show what is there, run nothing
-  bool failed = false;          ///< show what failed, run nothing
-  std::filesystem::path from;   ///< take the runs from this exported table, not from a store; run nothing
-  std::filesystem::path csv;    ///< export to this file
-  std::filesystem::path plot;   ///< draw into this file (SVG)
-  std::string output;           ///< what is shown and drawn; empty: the repose angle, or chi
+  EnsembleOptions ensemble;
+  bool list = false;           ///< show what is there, run nothing
+  bool failed = false;         ///< show what failed, run nothing
+  std::filesystem::path from;  ///< take the runs from this exported table, not from a store; run nothing
+  std::filesystem::path csv;   ///< export to this file
+  std::filesystem::path plot;  ///< draw into this file (SVG)
+  std::string output;          ///< what is shown and drawn; empty: the repose angle, or chi
 };
 
 struct CalibrateOptions {
   std::filesystem::path file;
-  std::filesystem::path store;  ///< empty: runs/store.sqlite
-  std::filesystem::path out;    ///< empty: runs/NAME
-  int jobs = 0;                 ///< 0: as many as cores
-  bool again = false;           ///< try runs that failed before again
-  bool force = false;           ///< write into a folder that is not empty
+  EnsembleOptions ensemble;
+  std::filesystem::path out;  ///< empty: runs/NAME
+  bool force = false;         ///< write into a folder that is not empty
 };
 
 struct PredictOptions {
@@ -55,25 +59,21 @@ struct PredictOptions {
 struct ReproduceOptions {
   std::vector<std::string> cases;  ///< names of files in scenarios/thesis; empty: all
   int seeds = 0;                   ///< of each, at most; 0: all that the case has
-  std::filesystem::path store;     ///< empty: runs/store.sqlite
-  std::filesystem::path out;       ///< empty: runs/reproduction
-  int jobs = 0;                    ///< runs side by side; 0: as many as cores
-  bool again = false;              ///< try runs that failed before again
-  bool list = false;               ///< report what is there, run nothing
-  bool force = false;              ///< write into a folder that is not empty
-  std::filesystem::path from;      ///< take the runs from this exported table; run nothing
-  std::filesystem::path csv;       ///< export to this file
+  EnsembleOptions ensemble;
+  std::filesystem::path out;   ///< empty: runs/reproduction
+  bool list = false;           ///< report what is there, run nothing
+  bool force = false;          ///< write into a folder that is not empty
+  std::filesystem::path from;  ///< take the runs from this exported table; run nothing
+  std::filesystem::path csv;   ///< export to this file
 };
 
 struct StudyOptions {
   std::filesystem::path file;
-  std::string rank_by;          ///< a criterion; empty: that of the file
-  std::filesystem::path store;  ///< empty: runs/store.sqlite
-  std::filesystem::path out;    ///< empty: a free runs/NAME
-  int jobs = 0;                 ///< runs side by side; 0: as many as cores
-  bool again = false;           ///< try runs that failed before again
-  bool list = false;            ///< report what is there, run nothing
-  bool force = false;           ///< write into a folder that is not empty
+  std::string rank_by;  ///< a criterion; empty: that of the file
+  EnsembleOptions ensemble;
+  std::filesystem::path out;  ///< empty: a free runs/NAME
+  bool list = false;          ///< report what is there, run nothing
+  bool force = false;         ///< write into a folder that is not empty
 };
 
 struct AnalyseOptions {
@@ -95,12 +95,10 @@ struct DiagnoseOptions {
   std::vector<std::filesystem::path> datasets;
   std::filesystem::path model;
   std::vector<std::string> without;  ///< effects that are not considered
-  std::filesystem::path store;       ///< empty: runs/store.sqlite
-  std::filesystem::path out;         ///< empty: a free runs/NAME
-  int jobs = 0;                      ///< runs side by side; 0: as many as cores
-  bool plan = false;                 ///< say what it will cost, run nothing
-  bool again = false;                ///< try runs that failed before again
-  bool force = false;                ///< write into a folder that is not empty
+  EnsembleOptions ensemble;
+  std::filesystem::path out;  ///< empty: a free runs/NAME
+  bool plan = false;          ///< say what it will cost, run nothing
+  bool force = false;         ///< write into a folder that is not empty
 };
 
 struct TwinOptions {
@@ -111,11 +109,10 @@ struct TwinOptions {
   double noise = 0.5;                 ///< of a measurement, over the scatter between seeds
   std::optional<std::uint64_t> seed;  ///< none: of the clock
   std::string engine;                 ///< that makes the data; empty: that of the scenarios
-  std::filesystem::path store;        ///< empty: runs/store.sqlite
-  std::filesystem::path out;          ///< empty: a free runs/twin
-  std::filesystem::path answer;       ///< empty: OUT.answer.json
-  int jobs = 0;                       ///< runs side by side; 0: as many as cores
-  bool force = false;                 ///< write into a folder that is not empty
+  EnsembleOptions ensemble;
+  std::filesystem::path out;     ///< empty: a free runs/twin
+  std::filesystem::path answer;  ///< empty: OUT.answer.json
+  bool force = false;            ///< write into a folder that is not empty
 };
 
 struct EffectsOptions {

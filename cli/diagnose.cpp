@@ -101,7 +101,7 @@ int run_diagnose(const DiagnoseOptions& options) {
       return kBadInput;
     }
   scree::DiagnosisSession session(loaded.model, scree::join_datasets(datasets), options.without, asset_dir());
-  const auto store = open_store(options.store, false);
+  const auto store = open_store(options.ensemble.store, false);
   if (!store) return kBadInput;
   if (options.plan) {
     print_plan(session, loaded.model, *store);
@@ -110,7 +110,7 @@ int run_diagnose(const DiagnoseOptions& options) {
   if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
   scree::DiagnosisOutcome outcome;
   try {
-    outcome = session.run(run_through(*store, options.jobs, options.again));
+    outcome = session.run(run_through(*store, options.ensemble));
   } catch (const scree::Stopped& stopped) {
     fmt::print(stderr, "{}\n", stopped.what());
     return kInterrupted;

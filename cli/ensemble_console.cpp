@@ -6,7 +6,6 @@
 #include <chrono>
 #include <thread>
 
-#include "cli/commands.h"
 #include "cli/progress.h"
 #include "scree_version.h"
 #include "sim/scene/scenario_values.h"
@@ -36,9 +35,9 @@ std::unique_ptr<scree::ResultsStore> open_store(const fs::path& named, bool only
 }
 
 scree::EnsembleProgress run_with_progress(const std::vector<scree::RunRequest>& runs,
-                                          scree::ResultsStore& store, int jobs, bool again) {
+                                          scree::ResultsStore& store, const EnsembleOptions& options) {
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  scree::LocalProcesses processes(jobs > 0 ? jobs : cores);
+  scree::LocalProcesses processes(options.jobs > 0 ? options.jobs : cores, options.checkpoint_minutes);
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const auto start = std::chrono::steady_clock::now();
   double shown = -1e9;
@@ -61,7 +60,7 @@ scree::EnsembleProgress run_with_progress(const std::vector<scree::RunRequest>& 
     return interrupted == 0;
   };
   const auto progress = scree::run_ensemble(
-      runs, store, processes, {fmt::format("{} ({})", SCREE_VERSION, SCREE_REVISION), again}, report);
+      runs, store, processes, {fmt::format("{} ({})", SCREE_VERSION, SCREE_REVISION), options.again}, report);
   if (line_open) fmt::print(stderr, "\n");
   return progress;
 }

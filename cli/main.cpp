@@ -41,6 +41,19 @@ Examples:
   scree schema > scenario.schema.json                    for editors that know JSON Schema
 )";
 
+// What every command has that brings runs into a store.
+void add_ensemble_options(CLI::App* app, EnsembleOptions& ensemble) {
+  app->add_option("--store", ensemble.store,
+                  "Results store; default: runs/store.sqlite. What is in it is not run again");
+  app->add_option("--jobs", ensemble.jobs, "Runs side by side; default: as many as cores")
+      ->check(CLI::Range(1, 1024));
+  app->add_flag("--again", ensemble.again, "Try runs that failed before again");
+  app->add_option("--checkpoint-minutes", ensemble.checkpoint_minutes,
+                  "Wall time between checkpoints of a run, from which it goes on when the command is "
+                  "interrupted or killed and started again; 0: none; default: 5")
+      ->check(CLI::Range(0.0, 1e6));
+}
+
 }  // namespace
 
 std::filesystem::path asset_dir() {
@@ -98,11 +111,7 @@ int main(int argc, char** argv) {
   SweepOptions sweep;
   CLI::App* sweep_app = app.add_subcommand("sweep", "Run a scenario over many values of its parameters");
   sweep_app->add_option("file", sweep.file, "Sweep file (YAML)")->required();
-  sweep_app->add_option("--store", sweep.store,
-                        "Results store; default: runs/store.sqlite. What is in it is not run again");
-  sweep_app->add_option("--jobs", sweep.jobs, "Runs side by side; default: as many as cores")
-      ->check(CLI::Range(1, 1024));
-  sweep_app->add_flag("--again", sweep.again, "Try runs that failed before again");
+  add_ensemble_options(sweep_app, sweep.ensemble);
   sweep_app->add_flag("--list", sweep.list, "Show the points and what is known of them; run nothing");
   sweep_app->add_flag("--failed", sweep.failed, "Show the runs that failed and why; run nothing");
   sweep_app
@@ -125,12 +134,9 @@ int main(int argc, char** argv) {
   CLI::App* calibrate_app =
       app.add_subcommand("calibrate", "Find the parameters that make a scenario give what was measured");
   calibrate_app->add_option("file", calibrate.file, "Calibration file (YAML)")->required();
-  calibrate_app->add_option("--store", calibrate.store, "Results store; default: runs/store.sqlite");
+  add_ensemble_options(calibrate_app, calibrate.ensemble);
   calibrate_app->add_option("--out", calibrate.out, "Folder for the result; default: runs/NAME");
-  calibrate_app->add_flag("--again", calibrate.again, "Try runs that failed before again");
   calibrate_app->add_flag("--force", calibrate.force, "Write into --out even if it holds something");
-  calibrate_app->add_option("--jobs", calibrate.jobs, "Runs side by side; default: as many as cores")
-      ->check(CLI::Range(1, 1024));
   calibrate_app->footer(
       "\nExamples:\n  scree calibrate scenarios/calibrations/lab_angle.yaml\n"
       "\nAn interrupted calibration goes on where it stopped when it is started again.\n");
@@ -157,12 +163,9 @@ int main(int argc, char** argv) {
                             "Cases: names of files in scenarios/thesis; default: all");
   reproduce_app->add_option("--seeds", reproduce.seeds, "Seeds of each case, at most")
       ->check(CLI::Range(1, 1000));
-  reproduce_app->add_option("--store", reproduce.store, "Results store; default: runs/store.sqlite");
+  add_ensemble_options(reproduce_app, reproduce.ensemble);
   reproduce_app->add_option("--out", reproduce.out,
                             "Folder for the report; default: a free runs/reproduction");
-  reproduce_app->add_option("--jobs", reproduce.jobs, "Runs side by side; default: as many as cores")
-      ->check(CLI::Range(1, 1024));
-  reproduce_app->add_flag("--again", reproduce.again, "Try runs that failed before again");
   reproduce_app->add_flag("--list", reproduce.list, "Report what the store has; run nothing");
   reproduce_app->add_flag("--force", reproduce.force, "Write into --out even if it holds something");
   reproduce_app
@@ -182,11 +185,8 @@ int main(int argc, char** argv) {
   CLI::App* study_app = app.add_subcommand("study", "Hold disposal options against each other and rank them");
   study_app->add_option("file", study.file, "Study file (YAML)")->required();
   study_app->add_option("--rank-by", study.rank_by, "Criterion; default: that of the file");
-  study_app->add_option("--store", study.store, "Results store; default: runs/store.sqlite");
+  add_ensemble_options(study_app, study.ensemble);
   study_app->add_option("--out", study.out, "Folder for the report; default: a free runs/NAME");
-  study_app->add_option("--jobs", study.jobs, "Runs side by side; default: as many as cores")
-      ->check(CLI::Range(1, 1024));
-  study_app->add_flag("--again", study.again, "Try runs that failed before again");
   study_app->add_flag("--list", study.list, "Report what the store has; run nothing");
   study_app->add_flag("--force", study.force, "Write into --out even if it holds something");
   study_app->footer("\nExample:\n  scree study scenarios/studies/disposal_qb.yaml\n");
@@ -254,11 +254,8 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->allow_extra_args(false);
   diagnose_app->add_flag("--plan", diagnose.plan, "Say how many simulations it needs and how long; run none");
-  diagnose_app->add_option("--store", diagnose.store, "Results store; default: runs/store.sqlite");
+  add_ensemble_options(diagnose_app, diagnose.ensemble);
   diagnose_app->add_option("--out", diagnose.out, "Folder for the report; default: a free runs/NAME");
-  diagnose_app->add_option("--jobs", diagnose.jobs, "Runs side by side; default: as many as cores")
-      ->check(CLI::Range(1, 1024));
-  diagnose_app->add_flag("--again", diagnose.again, "Try runs that failed before again");
   diagnose_app->add_flag("--force", diagnose.force, "Write into --out even if it holds something");
   diagnose_app->footer(
       "\nExamples:\n"
@@ -289,12 +286,10 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0, 1'000'000'000));
   twin_app->add_option("--engine", twin.engine, "Engine that makes the data")
       ->check(CLI::IsMember({"rrlinear", "impulse"}));
-  twin_app->add_option("--store", twin.store, "Results store of the model; default: runs/store.sqlite");
+  add_ensemble_options(twin_app, twin.ensemble);
   twin_app->add_option("--out", twin.out,
                        "Folder for dataset.yaml and observables.csv; default: a free runs/twin");
   twin_app->add_option("--answer", twin.answer, "File for the sealed answer; default: OUT.answer.json");
-  twin_app->add_option("--jobs", twin.jobs, "Runs side by side; default: as many as cores")
-      ->check(CLI::Range(1, 1024));
   twin_app->add_flag("--force", twin.force, "Write into --out even if it holds something");
   twin_app->footer(
       "\nExamples:\n  scree twin scenarios/models/small_dump.yaml\n"

@@ -85,9 +85,9 @@ int run_reproduce(const ReproduceOptions& options) {
     }
   } else {
     const std::vector<scree::RunRequest> requests = scree::requests_of(sweep, asset_dir());
-    const auto store = open_store(options.store, options.list);
+    const auto store = open_store(options.ensemble.store, options.list);
     if (!store) return kBadInput;
-    if (!options.list) progress = run_with_progress(requests, *store, options.jobs, options.again);
+    if (!options.list) progress = run_with_progress(requests, *store, options.ensemble);
     points = scree::look_up(sweep, requests, *store);
   }
 

@@ -45,10 +45,10 @@ int run_study(const StudyOptions& options) {
   }
   if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
   const std::vector<scree::RunRequest> requests = scree::requests_of(study.sweep, asset_dir());
-  const auto store = open_store(options.store, options.list);
+  const auto store = open_store(options.ensemble.store, options.list);
   if (!store) return kBadInput;
   scree::EnsembleProgress progress;
-  if (!options.list) progress = run_with_progress(requests, *store, options.jobs, options.again);
+  if (!options.list) progress = run_with_progress(requests, *store, options.ensemble);
   const auto ranked = options_of(study, scree::look_up(study.sweep, requests, *store));
   for (const std::string& line : scree::study_in_words(ranked, *criterion)) fmt::print("{}\n", line);
   if (interrupted) {

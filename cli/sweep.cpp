@@ -221,10 +221,10 @@ int run_sweep(const SweepOptions& options) {
 
   const std::vector<scree::RunRequest> requests = scree::requests_of(sweep, asset_dir());
   const bool only_look = options.list || options.failed;
-  const std::unique_ptr<scree::ResultsStore> store = open_store(options.store, only_look);
+  const std::unique_ptr<scree::ResultsStore> store = open_store(options.ensemble.store, only_look);
   if (!store) return kBadInput;
   scree::EnsembleProgress progress;
-  if (!only_look) progress = run_with_progress(requests, *store, options.jobs, options.again);
+  if (!only_look) progress = run_with_progress(requests, *store, options.ensemble);
 
   const int shown = show(options, sweep, scree::look_up(sweep, requests, *store));
   if (!only_look) fmt::print("store: {} ({} runs done here)\n", store->file().string(), progress.ended_here);

@@ -85,15 +85,14 @@ int run_twin(const TwinOptions& options) {
   const fs::path out = options.out.empty() ? free_run_folder("twin") : options.out;
   const fs::path answer = options.answer.empty() ? fs::path(out.string() + ".answer.json") : options.answer;
   if (!prepare_folder(out, options.force)) return kBadInput;
-  const auto store = open_store(options.store, false);
+  const auto store = open_store(options.ensemble.store, false);
   // What made the truth is not where diagnose looks.
   const fs::path hidden_file = answer.string() + ".runs.sqlite";
   const auto hidden = open_store(hidden_file, false);
   if (!store || !hidden) return kBadInput;
   try {
-    const scree::Twin twin =
-        scree::make_twin(model, spec, asset_dir(), run_through(*store, options.jobs, false),
-                         run_through(*hidden, options.jobs, false));
+    const scree::Twin twin = scree::make_twin(model, spec, asset_dir(), run_through(*store, options.ensemble),
+                                              run_through(*hidden, options.ensemble));
     const std::vector<std::string> left_out = scree::write_dataset(twin.data, out);
     if (!left_out.empty()) fmt::print("note: without scatter, left out: {}\n", fmt::join(left_out, ", "));
     scree::write_text_file(answer, scree::twin_answer(model, spec, twin.truth));

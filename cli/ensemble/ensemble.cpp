@@ -49,7 +49,7 @@ class Ensemble {
   ~Ensemble() {
     executor_.cancel();
     for (const auto& [key, run] : under_way_) {
-      forget_folder(key);  // before another program may claim the run and make its own
+      if (!has_checkpoint(key)) forget_folder(key);  // before another program may claim it and make its own
       try {
         store_.release(key);
       } catch (const std::exception&) {  // it is free again when this program has ended
@@ -89,6 +89,14 @@ class Ensemble {
     fs::remove_all(folder_of(key), ignored);
   }
 
+  // Whether a run of this key, killed or interrupted, got as far as a checkpoint.
+  bool has_checkpoint(const std::string& key) const {
+    std::error_code none;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_of(key) / "run", none))
+      if (entry.path().filename().string().starts_with("checkpoint_")) return true;
+    return false;
+  }
+
   void start_what_can_be() {
     if (waiting_.empty() && !left_to_others_.empty() && now() - looked_ > kLookAtOthers) {
       waiting_.swap(left_to_others_);
@@ -118,6 +126,10 @@ class Ensemble {
     under_way_[run.key] = &run;
     tried_.insert(run.key);
     const fs::path folder = folder_of(run.key);
+    if (has_checkpoint(run.key)) {
+      resumed_.insert(run.key);
+      return executor_.start({run.key, folder, true});
+    }
     std::error_code error;
     fs::remove_all(folder, error);  // of one that was killed
     // Another program that has just ended may take the empty parent away in between.
@@ -125,7 +137,7 @@ class Ensemble {
     }
     if (error) fail_to_write(folder, error.message());
     write_text_file(folder / "scenario.yaml", run.scenario);
-    executor_.start({run.key, folder});
+    executor_.start({run.key, folder, false});
   }
 
   void settle(const EndedJob& ended) {
@@ -133,6 +145,8 @@ class Ensemble {
     under_way_.erase(ended.key);
     std::string failure = ended.message, text;
     std::map<std::string, double> outputs;
+    double seconds = ended.wall_seconds;
+    const bool resumed = resumed_.erase(ended.key) > 0;
     if (ended.end == JobEnd::good) {
       try {
         std::ifstream in(folder_of(ended.key) / "run" / "summary.json");
@@ -142,11 +156,23 @@ class Ensemble {
         StoredRun run = parse_summary(text);
         if (run.outputs.size() != 1) throw std::runtime_error("a summary of one seed is expected");
         outputs = std::move(run.outputs.front());
+        if (resumed) seconds = std::max(seconds, run.wall_seconds.front());
       } catch (const std::runtime_error& error) {
         failure = error.what();
       }
     }
+    if (ended.end == JobEnd::interrupted && has_checkpoint(ended.key)) {
+      store_.release(ended.key);
+      waiting_.push_back(request);
+      return;
+    }
     forget_folder(ended.key);
+    if (ended.end == JobEnd::refused && resumed) {
+      // Of another version of the program, or damaged: it begins anew.
+      store_.release(ended.key);
+      waiting_.insert(waiting_.begin(), request);
+      return;
+    }
     if (ended.end == JobEnd::interrupted) {
       // By a signal to all, which ends the loop as well, or to this run alone: then it is done again.
       if (++interrupted_[ended.key] < kMostInterruptions) {
@@ -156,8 +182,8 @@ class Ensemble {
       }
       failure = fmt::format("interrupted {} times", kMostInterruptions);
     }
-    const bool ours = failure.empty() ? store_.finish(ended.key, text, outputs, ended.wall_seconds)
-                                      : store_.fail(ended.key, failure, ended.wall_seconds);
+    const bool ours = failure.empty() ? store_.finish(ended.key, text, outputs, seconds)
+                                      : store_.fail(ended.key, failure, seconds);
     if (!ours) return;  // it was taken for dead, and another program does the run now
     ++progress_.ended_here;
     failure.empty() ? ++progress_.done : ++progress_.failed;
@@ -169,7 +195,7 @@ class Ensemble {
   std::vector<const RunRequest*> waiting_, left_to_others_;
   std::map<std::string, const RunRequest*> under_way_;
   std::map<std::string, int> interrupted_;  // how often, by key
-  std::set<std::string> tried_;
+  std::set<std::string> tried_, resumed_;
   double looked_ = 0;
   EnsembleProgress progress_;
 };

@@ -8,15 +8,17 @@
 
 namespace scree {
 
-/// A run to be done: `scree run` on a scenario file in a folder of its own, where it leaves summary.json and
-/// log.txt.
+/// A run to be done: `scree run` on a scenario file in a folder of its own, where it leaves run/summary.json
+/// and log.txt.
 struct Job {
   std::string key;
   std::filesystem::path folder;  ///< holds scenario.yaml
+  bool resume = false;           ///< go on with what is in folder/run
 };
 
-/// `interrupted`: by a signal to all, as when the machine is shut down.
-enum class JobEnd { good, bad, interrupted };
+/// `refused`: bad input, nothing was simulated. `interrupted`: by a signal to all, as when the machine is
+/// shut down.
+enum class JobEnd { good, bad, refused, interrupted };
 
 /// A run that has ended.
 struct EndedJob {
@@ -45,7 +47,8 @@ class Executor {
 class LocalProcesses final : public Executor {
  public:
   /// `program`: this very program, even if its file was replaced meanwhile, unless a test names another.
-  explicit LocalProcesses(int places, std::filesystem::path program = "/proc/self/exe");
+  /// `checkpoint_minutes`: wall time between checkpoints of a run; 0: none.
+  LocalProcesses(int places, double checkpoint_minutes, std::filesystem::path program = "/proc/self/exe");
   ~LocalProcesses() override;
   int free_places() const override;
   void start(const Job& job) override;
@@ -61,6 +64,7 @@ class LocalProcesses final : public Executor {
   };
   std::filesystem::path program_;
   int places_;
+  double checkpoint_minutes_;
   std::vector<Process> processes_;
 };
 

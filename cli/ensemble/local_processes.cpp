@@ -18,7 +18,7 @@
 namespace scree {
 namespace {
 
-constexpr int kInterrupted = 130;                      // exit status of a run that was asked to end
+constexpr int kBadInput = 2, kInterrupted = 130;       // exit status of a run
 constexpr auto kLook = std::chrono::milliseconds(20);  // between looks at the processes
 
 double now() {
@@ -61,8 +61,8 @@ std::string words_in(const std::filesystem::path& log) {
 
 }  // namespace
 
-LocalProcesses::LocalProcesses(int places, std::filesystem::path program)
-    : program_(std::move(program)), places_(places) {}
+LocalProcesses::LocalProcesses(int places, double checkpoint_minutes, std::filesystem::path program)
+    : program_(std::move(program)), places_(places), checkpoint_minutes_(checkpoint_minutes) {}
 
 LocalProcesses::~LocalProcesses() {
   cancel();
@@ -75,7 +75,11 @@ int LocalProcesses::free_places() const {
 void LocalProcesses::start(const Job& job) {
   const std::string program = program_.string(), scenario = (job.folder / "scenario.yaml").string(),
                     out = (job.folder / "run").string(), log = (job.folder / "log.txt").string();
-  std::vector<std::string> words{program, "run", scenario, "--out", out, "--threads", "1", "--summary-only"};
+  std::vector<std::string> words{program, "run", scenario, "--out", out};
+  if (job.resume) words = {program, "run", "--resume", out};
+  for (const char* word : {"--threads", "1", "--summary-only", "--checkpoint-minutes"})
+    words.emplace_back(word);
+  words.push_back(fmt::format("{}", checkpoint_minutes_));
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -107,10 +111,11 @@ std::optional<EndedJob> LocalProcesses::wait(double patience) {
       EndedJob ended{process->job.key,
                      code == 0              ? JobEnd::good
                      : code == kInterrupted ? JobEnd::interrupted
+                     : code == kBadInput    ? JobEnd::refused
                                             : JobEnd::bad,
                      {},
                      now() - process->started};
-      if (ended.end == JobEnd::bad) {
+      if (ended.end == JobEnd::bad || ended.end == JobEnd::refused) {
         const std::string words = words_in(process->job.folder / "log.txt");
         ended.message = WIFSIGNALED(status) ? fmt::format("killed by signal {}", WTERMSIG(status))
                         : words.empty()     ? fmt::format("exit status {}", WEXITSTATUS(status))

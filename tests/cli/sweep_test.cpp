@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 #include <regex>
+#include <set>
 #include <thread>
 #include <vector>
 
@@ -96,6 +97,43 @@ TEST_F(SweepCli, KilledAtAnyMomentItGoesOnToTheSameStore) {
   EXPECT_EQ(WEXITSTATUS(status), 0);
   EXPECT_GE(kills, 3);
   EXPECT_EQ(rows("killed.sqlite"), whole);
+  EXPECT_FALSE(fs::exists(folder / "killed.sqlite.work")) << "nothing is left of what was killed";
+}
+
+// What a killed sweep had simulated of a long run is not simulated again.
+TEST_F(SweepCli, KilledInTheMiddleOfARunItGoesOnFromItsCheckpoint) {
+  write("sweep.yaml", head +
+                          "seeds: [1]\nset: {experiment.mass_kg: 4}\n"
+                          "design: {type: list, points: [{material.mu: 0.2}]}\n");
+  const std::string sweep = in_folder("sweep.yaml");
+  ASSERT_EQ(call("sweep " + sweep + " --checkpoint-minutes 0 --store " + in_folder("whole.sqlite")).code, 0);
+  std::set<std::string> goes_on;  // times from which it went on
+  bool ended = false;
+  for (int round = 0; !ended; ++round) {
+    ASSERT_LT(round, 100) << "it comes no further";
+    const pid_t child =
+        start({"sweep", sweep, "--checkpoint-minutes", "0.003", "--store", in_folder("killed.sqlite")});
+    const auto begin = std::chrono::steady_clock::now();
+    int status = 0;
+    while (!ended && std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(700 + 50 * round)) {
+      ended = waitpid(child, &status, WNOHANG) == child;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    if (!ended) {
+      kill(child, SIGKILL);
+      waitpid(child, &status, 0);
+    } else {
+      EXPECT_EQ(WEXITSTATUS(status), 0);
+    }
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folder / "killed.sqlite.work", none)) {
+      std::smatch found;
+      const std::string log = slurp(entry.path() / "log.txt");
+      if (std::regex_search(log, found, std::regex("goes on from t = ([0-9.]+) s"))) goes_on.insert(found[1]);
+    }
+  }
+  EXPECT_GE(goes_on.size(), 2u);
+  EXPECT_EQ(rows("killed.sqlite"), rows("whole.sqlite"));
   EXPECT_FALSE(fs::exists(folder / "killed.sqlite.work")) << "nothing is left of what was killed";
 }
 

@@ -52,7 +52,7 @@ END
 
 TEST_F(Runs, AllComeIntoTheStoreOnce) {
   ResultsStore store(folder / "store.sqlite");
-  LocalProcesses processes(3, program("sleep 0.1"));
+  LocalProcesses processes(3, 5, program("sleep 0.1"));
   requests.push_back(requests.front());  // stands in the sweep twice
   const EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
   EXPECT_EQ(end.runs, 6u);
@@ -74,7 +74,7 @@ TEST_F(Runs, AllComeIntoTheStoreOnce) {
 
 TEST_F(Runs, OneThatFailsDoesNotStopTheRest) {
   ResultsStore store(folder / "store.sqlite");
-  LocalProcesses processes(2,
+  LocalProcesses processes(2, 5,
                            program("echo ' 12 %  about 3 s left'; case $n in 2) echo 'seed 1: it blew up'; "
                                    "exit 1;; 3) kill -9 $$;; 4) exit 0;; esac"));
   EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
@@ -85,7 +85,7 @@ TEST_F(Runs, OneThatFailsDoesNotStopTheRest) {
   EXPECT_NE(store.find("key4")->message.find("not a summary"), std::string::npos);
   end = run_ensemble(requests, store, processes, {"1", false}, go_on);
   EXPECT_EQ(end.ended_here, 0u);
-  LocalProcesses mended(2, program(""));
+  LocalProcesses mended(2, 5, program(""));
   end = run_ensemble(requests, store, mended, {"1", true}, go_on);
   EXPECT_EQ(end.ended_here, 3u);
   EXPECT_EQ(end.done, 6u);
@@ -94,8 +94,9 @@ TEST_F(Runs, OneThatFailsDoesNotStopTheRest) {
 TEST_F(Runs, OneThatIsInterruptedAloneIsDoneAgain) {
   ResultsStore store(folder / "store.sqlite");
   const std::string mark = (folder / "interrupted").string();
-  LocalProcesses processes(2, program("if [ $n = 2 ] && [ ! -e " + mark + " ]; then touch " + mark +
-                                      "; exit 130; fi; if [ $n = 4 ]; then exit 130; fi"));
+  LocalProcesses processes(2, 5,
+                           program("if [ $n = 2 ] && [ ! -e " + mark + " ]; then touch " + mark +
+                                   "; exit 130; fi; if [ $n = 4 ]; then exit 130; fi"));
   const EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
   EXPECT_EQ(end.done, 5u);
   EXPECT_EQ(end.failed, 1u);
@@ -106,7 +107,7 @@ TEST_F(Runs, OneThatIsInterruptedAloneIsDoneAgain) {
 
 TEST_F(Runs, InterruptedOnesAreGivenBackAndEnd) {
   ResultsStore store(folder / "store.sqlite");
-  LocalProcesses processes(2, program("exec sleep 100"));
+  LocalProcesses processes(2, 5, program("exec sleep 100"));
   const auto start = std::chrono::steady_clock::now();
   const EnsembleProgress end =
       run_ensemble(requests, store, processes, {"1", false}, [&](const EnsembleProgress&) {
@@ -116,6 +117,61 @@ TEST_F(Runs, InterruptedOnesAreGivenBackAndEnd) {
   for (const RunRequest& run : requests) EXPECT_FALSE(store.find(run.key).has_value());
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
   EXPECT_FALSE(fs::exists(folder / "store.sqlite.work"));
+}
+
+// A program that makes a checkpoint, is interrupted there, and goes on from it when it is asked to.
+TEST_F(Runs, ThoseWithACheckpointGoOnFromIt) {
+  const fs::path file = folder / "long.sh";
+  const std::string begun = (folder / "begun").string();
+  const auto write = [&](const std::string& resumed) {
+    std::ofstream(file) << "#!/bin/sh\nif [ $2 = --resume ]; then out=$3; echo resumed >> " << begun << "\n"
+                        << resumed << "\nelse out=$4; echo anew >> " << begun << R"(
+  if [ ! -e )" << (folder / "refusing").string()
+                        << R"( ]; then
+    mkdir -p $out/seed_1; touch $out/resume.json $out/seed_1/checkpoint_1; exec sleep 100
+  fi
+  mkdir -p $out
+fi
+cat > $out/summary.json <<END
+{"title": "made up", "comparison": [], "per_seed": [
+  {"seed": 1, "wall_seconds": 500, "outputs": {"particles": 10, "simulated_seconds": 1.5, "at_rest": 1, "angle_deg": 3}}]}
+END
+)";
+    fs::permissions(file, fs::perms::owner_all);
+  };
+  const auto interrupted_at_checkpoints = [&](ResultsStore& store) {
+    LocalProcesses processes(2, 5, file);
+    run_ensemble(requests, store, processes, {"1", false}, [&](const EnsembleProgress&) {
+      for (const char* key : {"key0", "key1"})
+        if (!fs::exists(store.file().string() + ".work/" + key + "/run/seed_1/checkpoint_1")) return true;
+      return false;
+    });
+  };
+  requests.resize(2);
+  write("");
+  {
+    ResultsStore store(folder / "store.sqlite");
+    interrupted_at_checkpoints(store);
+    LocalProcesses processes(2, 5, file);
+    const EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
+    EXPECT_EQ(end.done, 2u);
+    EXPECT_EQ(this->begun(), (std::vector<std::string>{"anew", "anew", "resumed", "resumed"}));
+    EXPECT_EQ(store.find("key0")->wall_seconds, 500) << "of all its parts";
+    EXPECT_FALSE(fs::exists(folder / "store.sqlite.work"));
+  }
+  {  // Checkpoints of another version of the program are refused: the run begins anew.
+    ResultsStore store(folder / "other.sqlite");
+    interrupted_at_checkpoints(store);
+    write("echo of another version; exit 2");
+    std::ofstream(folder / "refusing") << "yes";
+    fs::remove(folder / "begun");
+    LocalProcesses processes(1, 5, file);
+    const EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
+    EXPECT_EQ(end.done, 2u);
+    EXPECT_EQ(end.failed, 0u);
+    EXPECT_EQ(this->begun(), (std::vector<std::string>{"resumed", "anew", "resumed", "anew"}));
+    EXPECT_LT(store.find("key0")->wall_seconds, 100);
+  }
 }
 
 }  // namespace
