@@ -21,6 +21,7 @@ constexpr std::size_t kPairsOfBest = 4;  // pairs are tried that hold one of the
 constexpr double kLogUnknownLow = 0,
                  kLogUnknownHigh = 8;   // of the variance of what is unknown, over the data's
 constexpr std::uint64_t kSeed = 20177;  // of the integrals
+constexpr double kWider = 1.5;          // spread of points to be learnt from, over that of what is open
 constexpr double kStep = 0.05;          // of a numerical derivative by a coordinate
 
 // `scatter_freedom`: of the covariance; infinite if it is known.
@@ -55,6 +56,33 @@ Density density(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covari
   return {chi2, log_shape - factor.matrixLLT().diagonal().array().log().sum()};
 }
 
+// Base coordinates, then those of each effect's parameters.
+ModelPoint point_of(const ModelSpace& space, const Hypothesis& h, const Eigen::VectorXd& x) {
+  const auto p = static_cast<Eigen::Index>(space.base.size());
+  ModelPoint point{x.head(p), {}};
+  Eigen::Index next = p;
+  for (const std::size_t e : h.effects) {
+    const auto count = static_cast<Eigen::Index>(space.effects[e].axes.size());
+    point.effects.push_back({e, x.segment(next, count)});
+    next += count;
+  }
+  return point;
+}
+
+// Where the parameters of a hypothesis may lie.
+ParameterBox box_of(const ModelSpace& space, const Hypothesis& h) {
+  std::vector<double> low(space.base.size(), -1.0), high(space.base.size(), 1.0);
+  for (const std::size_t e : h.effects) {
+    const CandidateEffect& effect = space.effects[e];
+    low.push_back(effect.lowest());
+    high.push_back(effect.highest());
+    for (std::size_t k = 1; k < effect.axes.size(); ++k) low.push_back(-1), high.push_back(1);
+  }
+  if (h.unknown) low.push_back(kLogUnknownLow), high.push_back(kLogUnknownHigh);
+  const auto n = static_cast<Eigen::Index>(low.size());
+  return {Eigen::Map<Eigen::VectorXd>(low.data(), n), Eigen::Map<Eigen::VectorXd>(high.data(), n)};
+}
+
 std::vector<Eigen::Index> everything(Eigen::Index n) {
   std::vector<Eigen::Index> all(static_cast<std::size_t>(n));
   std::iota(all.begin(), all.end(), 0);
@@ -72,29 +100,7 @@ class Likelihood {
     scale_ = covariance_.diagonal().cwiseSqrt();
   }
 
-  ParameterBox box(const Hypothesis& h) const {
-    std::vector<double> low(space_.base.size(), -1.0), high(space_.base.size(), 1.0);
-    for (const std::size_t e : h.effects) {
-      const CandidateEffect& effect = space_.effects[e];
-      low.push_back(effect.lowest());
-      high.push_back(effect.highest());
-      for (std::size_t k = 1; k < effect.axes.size(); ++k) low.push_back(-1), high.push_back(1);
-    }
-    if (h.unknown) low.push_back(kLogUnknownLow), high.push_back(kLogUnknownHigh);
-    const auto n = static_cast<Eigen::Index>(low.size());
-    return {Eigen::Map<Eigen::VectorXd>(low.data(), n), Eigen::Map<Eigen::VectorXd>(high.data(), n)};
-  }
-  ModelPoint point(const Hypothesis& h, const Eigen::VectorXd& x) const {
-    const auto p = static_cast<Eigen::Index>(space_.base.size());
-    ModelPoint point{x.head(p), {}};
-    Eigen::Index next = p;
-    for (const std::size_t e : h.effects) {
-      const auto count = static_cast<Eigen::Index>(space_.effects[e].axes.size());
-      point.effects.push_back({e, x.segment(next, count)});
-      next += count;
-    }
-    return point;
-  }
+  ModelPoint point(const Hypothesis& h, const Eigen::VectorXd& x) const { return point_of(space_, h, x); }
   Density at(const Hypothesis& h, const Eigen::VectorXd& x) const {
     const SurfacePrediction all = model_.at(point(h, x));
     Eigen::MatrixXd covariance = covariance_ + all.covariance(which_, which_);
@@ -102,7 +108,8 @@ class Likelihood {
     return density(value_ - all.mean(which_), covariance, scale_, freedom_);
   }
   Evidence evidence(const Hypothesis& h) const {
-    return integrate([&](const Eigen::VectorXd& x) { return at(h, x).log_density; }, box(h), kSeed);
+    return integrate([&](const Eigen::VectorXd& x) { return at(h, x).log_density; }, box_of(space_, h),
+                     kSeed);
   }
   int numbers() const { return static_cast<int>(which_.size()); }
   double freedom() const { return freedom_; }
@@ -267,6 +274,23 @@ std::vector<const ResponseSurface*> LearntModel::surfaces() const {
   std::vector<const ResponseSurface*> all;
   for (const ResponseSurface& surface : surfaces_) all.push_back(&surface);
   return all;
+}
+
+std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Judgement& judgement, int count) {
+  const Evidence& evidence = judgement.evidence;
+  const ParameterBox box = box_of(space, judgement.hypothesis);
+  const Eigen::VectorXd mean = evidence.mean();
+  std::vector<ModelPoint> points;
+  double sum = 0;
+  for (Eigen::Index s = 0; s < evidence.samples.rows(); ++s) {  // systematic sampling by weight
+    sum += evidence.weights[s];
+    while (static_cast<int>(points.size()) < count &&
+           sum * count > static_cast<double>(points.size()) + 0.5) {
+      const Eigen::VectorXd x = mean + kWider * (evidence.samples.row(s).transpose() - mean);
+      points.push_back(point_of(space, judgement.hypothesis, x.cwiseMax(box.low).cwiseMin(box.high)));
+    }
+  }
+  return points;
 }
 
 Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model) {

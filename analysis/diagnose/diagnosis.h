@@ -111,6 +111,10 @@ class LearntModel {
   std::vector<ResponseSurface> surfaces_;
 };
 
+/// Points drawn from what the data leave open of a hypothesis, spread wider than it is by a half: where it is
+/// worth learning more. They depend on the judgement alone.
+std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Judgement& judgement, int count);
+
 /// Finds, re-calibrates and names.
 Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model);
 

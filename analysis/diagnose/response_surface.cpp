@@ -15,12 +15,20 @@ namespace {
 constexpr double kBase1 = 1, kBase2 = 0.5, kBase11 = 0.5, kBase3 = 0.3;
 constexpr double kEffect1 = 1, kEffect2 = 0.6, kEffect3 = 0.4, kWithBase = 0.5, kWithOther = 0.5,
                  kWithOther2 = 0.3, kTogether = 0.5;
-constexpr double kConstant = 100;  // of the scatter
+constexpr double kHat = 1;
+constexpr int kHats = 5;           // along an amplitude, each a sixth of the range wide to either side
+constexpr double kConstant = 1e4;  // of the scatter
 
 // Sizes that a group may have, over the scatter; half a unit of a normal prior on their logarithm each way.
-constexpr std::array<double, 9> kSizes{0.02, 0.1, 0.3, 0.7, 1.5, 3, 6, 15, 50};
+constexpr std::array<double, 11> kSizes{0.02, 0.1, 0.3, 0.7, 1.5, 3, 6, 15, 50, 200, 1000};
 constexpr double kLogSizeMean = 0, kLogSizeStd = 2;
+constexpr double kLogHatMean = -3, kLogHatStd = 1.5;  // hats are for what polynomials cannot do
 constexpr int kMostSweeps = 6;
+
+// 1 at the knot, 0 from its neighbours on; for amplitudes of either sign.
+double hat(double amplitude, int knot) {
+  return std::max(0.0, 1 - std::abs((kHats + 1) * std::abs(amplitude) - knot));
+}
 
 double power(double x, int n) {
   double product = 1;
@@ -63,11 +71,16 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
     if (!acts_[e] || !simulated[e]) continue;
     const int effect = static_cast<int>(e), group = effect + 1;
     const auto add = [&](double prior, int order, int other) {
-      terms_.push_back({group, -1, prior, none, effect, order, other, -1});
+      terms_.push_back({group, -1, prior, none, effect, order, other});
     };
     add(kEffect1, 1, 0);
     add(kEffect2, 2, 0);
     add(kEffect3, 3, 0);
+    for (int knot = 1; knot <= kHats; ++knot) {
+      add(kHat, 0, 0);
+      terms_.back().hat = knot;
+      terms_.back().group += static_cast<int>(space.effects.size());
+    }
     for (std::size_t i = 0; i < p; ++i) {
       add(kWithBase, 1, 0);
       terms_.back().base_power[i] = 1;
@@ -94,7 +107,8 @@ void ResponseSurface::values(const ModelPoint& point, std::vector<Eigen::Index>&
     if (term.effect >= 0) {
       const EffectAt* effect = there[static_cast<std::size_t>(term.effect)];
       if (effect == nullptr) continue;
-      product = power(effect->amplitude(), term.power);
+      product = term.hat > 0 ? hat(effect->amplitude(), term.hat) : power(effect->amplitude(), term.power);
+      if (product == 0) continue;
       if (term.other > 0) product *= effect->at[term.other];
     }
     if (term.second >= 0) {
@@ -135,7 +149,9 @@ ResponseSurface::Fit ResponseSurface::fit(const Eigen::MatrixXd& features, const
     log_density -= factor.matrixLLT().diagonal().array().log().sum();
     log_density -= 0.5 * static_cast<double>(n) * std::log(misfit);
     for (Eigen::Index g = 0; g < groups_; ++g) {
-      const double z = (std::log(size[g]) - kLogSizeMean) / kLogSizeStd;
+      const bool hats = 2 * g >= groups_ + 1;
+      const double z =
+          (std::log(size[g]) - (hats ? kLogHatMean : kLogSizeMean)) / (hats ? kLogHatStd : kLogSizeStd);
       log_density -= 0.5 * z * z;
     }
     return log_density;
@@ -183,7 +199,7 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
                                  const std::vector<DesignRun>& runs) {
   for (const CandidateEffect& effect : space.effects) acts_.push_back(effect.acts_in(experiment));
   if (acts_.size() > 64) throw std::invalid_argument("at most 64 effects");
-  groups_ = 1 + static_cast<int>(space.effects.size());
+  groups_ = 1 + 2 * static_cast<int>(space.effects.size());
   const auto n = static_cast<Eigen::Index>(runs.size());
   const auto plain =
       std::count_if(runs.begin(), runs.end(), [](const auto& r) { return r.at.effects.empty(); });

@@ -4,7 +4,8 @@
 //
 // Each output is a polynomial of the coordinates with Gaussian priors on its coefficients: third order in the
 // base parameters, third order in an effect's amplitude, products of the amplitude with the base parameters,
-// with the effect's other parameters and with the amplitudes of other effects. An effect that is absent
+// with the effect's other parameters and with the amplitudes of other effects; and hats along the amplitude,
+// for effects that have done all they can before the end of their range. An effect that is absent
 // changes nothing. How large the coefficients of the base and of each effect are a priori, and how large the
 // scatter is, are those of the largest marginal likelihood. Outputs of one run are correlated: the
 // polynomials are those of combinations of the outputs whose scatter is not.
@@ -49,13 +50,14 @@ class ResponseSurface {
 
  private:
   struct Term {                   // a monomial
-    int group;                    // whose size its prior has: 0: base, 1 + k: effect k of the space
+    int group;                    // whose size its prior has: 0: base, 1 + k: effect k, then hats of effects
     int second_group;             // -1, or that of the other effect of a product
     double prior;                 // standard deviation over the size
     std::vector<int> base_power;  // by base axis
     int effect = -1, power = 0;   // of the amplitude
     int other = 0;                // a further parameter of the effect, from 1; 0: none
     int second = -1;              // the other effect of a product
+    int hat = 0;                  // from 1: in place of a power, the hat at this knot of the amplitude
   };
   void make_terms(const ModelSpace& space, const std::vector<DesignRun>& runs);
   // The terms that do not vanish at a point, and their values.

@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kBaseSeeds = 500'000, kEffectSeeds = 510'000, kCheckSeeds = 700'000;
 constexpr std::uint64_t kSeedsOfOneEffect = 1000;
 constexpr int kMostRounds = 4;
+constexpr int kExplored = 2;     // rounds in which what is open of the leading effect is simulated, too
 constexpr double kRivalBy = 20;  // ratio of probabilities up to which a rival is simulated, too
 constexpr std::size_t kMostRivals = 2;
 constexpr double kMoved = 0.1;        // of a coordinate: a fit has moved, and is simulated anew
@@ -271,6 +272,16 @@ SimulatedModel DiagnosisSession::simulate(const ModelPoint& point, const RunThro
   return simulated;
 }
 
+void DiagnosisSession::explore(const Judgement& judgement, const RunThrough& run, DiagnosisOutcome& outcome) {
+  std::vector<PlannedRun> planned;
+  for (const ModelPoint& point : where_to_learn(space_, judgement, model_.simulations.effect))
+    planned.push_back({point, kCheckSeeds + ++checks_});
+  std::vector<ExperimentRuns> runs;
+  for (const Dataset::Experiment& experiment : data_.experiments)
+    runs.push_back(runs_of(model_, space_, experiment, planned, asset_dir_));
+  learn_from(runs, run, outcome);
+}
+
 std::vector<NextMeasurement> DiagnosisSession::tell_apart(const DiagnosisOutcome& outcome) const {
   constexpr double kRepeats = 5;
   const Diagnosis& d = outcome.diagnosis;
@@ -351,7 +362,9 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     show(d.calibration.best, calibrated);
     if (d.calibration.gap.p <= kFitsAbove)
       if (const Judgement* lead = best_effect(d)) {
+        const bool known = augmented && !moved(augmented->at, lead->best);
         show(lead->best, augmented);
+        if (!known && round < kExplored) explore(*lead, run, outcome);
         std::size_t rivals = 0;
         for (const Judgement& j : d.judgements)
           if (round == 0 && &j != lead && !j.hypothesis.effects.empty() && rivals < kMostRivals &&

@@ -75,6 +75,8 @@ class DiagnosisSession {
  private:
   void learn_from(const std::vector<ExperimentRuns>& runs, const RunThrough& run, DiagnosisOutcome& outcome);
   SimulatedModel simulate(const ModelPoint& point, const RunThrough& run, DiagnosisOutcome& outcome);
+  // Learns from simulations spread over what the data leave open of a hypothesis.
+  void explore(const Judgement& judgement, const RunThrough& run, DiagnosisOutcome& outcome);
   std::vector<NextMeasurement> tell_apart(const DiagnosisOutcome& outcome) const;
 
   const DiagnosisModel& model_;
