@@ -67,6 +67,11 @@ std::string answer(const DiagnosisOutcome& o) {
           "Nothing is missing that these {} numbers could show: the model as it is agrees with them.",
           d.measured.values.size());
     case Kind::calibration:
+      if (d.calibration.gap.p <= kFitsAbove)
+        return fmt::format(
+            "No effect can be named: other parameters leave more than chance often does (p = {:.2g}), but "
+            "nothing else is {:g} times as probable as they are. More repeats would tell. {}.",
+            d.calibration.gap.p, kApartBy, base_in_words(o.space, d.calibration));
       return fmt::format("No effect needs to be added: other parameters explain the {} numbers. {}.",
                          d.measured.values.size(), base_in_words(o.space, d.calibration));
     case Kind::unknown:
