@@ -20,8 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // What the design costs, and what of it is there.
-void print_plan(const scree::DiagnosisSession& session, const scree::DiagnosisModel& model,
-                const scree::ResultsStore& store) {
+void print_plan(const scree::DiagnosisSession& session, const scree::ResultsStore& store) {
   std::size_t all = 0, there = 0;
   double left = 0;
   bool known = true;
@@ -45,7 +44,7 @@ void print_plan(const scree::DiagnosisSession& session, const scree::DiagnosisMo
       known = false;
   }
   fmt::print("{} simulations, {} of them in the store; then up to {} more of what is named\n", all, there,
-             4 * 2 * model.simulations.check * static_cast<int>(session.design().size()));
+             session.most_further());
   for (const std::string& note : session.data().notes) fmt::print("note: {}\n", note);
   if (known)
     fmt::print("about {} of one core are left\n", scree::spell_duration(left));
@@ -104,7 +103,7 @@ int run_diagnose(const DiagnoseOptions& options) {
   const auto store = open_store(options.ensemble.store, false);
   if (!store) return kBadInput;
   if (options.plan) {
-    print_plan(session, loaded.model, *store);
+    print_plan(session, *store);
     return kOk;
   }
   if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;

@@ -42,8 +42,15 @@ scree::EnsembleProgress run_with_progress(const std::vector<scree::RunRequest>& 
   const auto start = std::chrono::steady_clock::now();
   double shown = -1e9;
   bool line_open = false;
+  std::size_t anew = 0;
   const auto report = [&](const scree::EnsembleProgress& p) {
     const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (p.begun_anew > anew) {
+      fmt::print(stderr, "{}{} run(s) began anew, their checkpoints were refused: {}\n",
+                 line_open ? "\n" : "", p.begun_anew, p.why_anew);
+      anew = p.begun_anew;
+      line_open = false;
+    }
     if (elapsed - shown < (terminal ? kTerminalInterval : kPlainInterval)) return interrupted == 0;
     shown = elapsed;
     const double left = static_cast<double>(p.runs - p.done - p.failed) - p.share_under_way;

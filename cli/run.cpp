@@ -44,6 +44,7 @@ std::vector<std::uint64_t> chosen_seeds(const scree::Scenario& scenario, int cou
 }
 
 constexpr double kCheckpointMinutes = 5;
+constexpr double kDying = 10;  // s that a killed process may take to end
 
 /// What is to be run, where.
 struct Plan {
@@ -96,7 +97,7 @@ std::optional<Plan> plan_resumed(const RunOptions& options) {
   plan.resume = true;
   plan.out = options.resume;
   plan.record = read_record(plan.out);
-  plan.lock = std::make_unique<FolderLock>(plan.out);
+  plan.lock = std::make_unique<FolderLock>(plan.out, kDying);
   const fs::path file = plan.out / "scenario.yaml";
   scree::ScenarioResult loaded = scree::load_scenario(file, {}, asset_dir());
   if (!check(loaded)) return std::nullopt;
@@ -182,9 +183,10 @@ int run_run(const RunOptions& options) {
     workers.clear();
     display.finish();
   }
-  const bool worth_resuming =
-      checkpoints && (interrupted || std::any_of(runs.begin(), runs.end(),
-                                                 [](const SeedRun& run) { return run.worth_resuming; }));
+  const bool worth_resuming = (checkpoints || plan.resume) &&
+                              (interrupted || std::any_of(runs.begin(), runs.end(), [](const SeedRun& run) {
+                                 return run.worth_resuming;
+                               }));
   const auto say_how_to_resume = [&] {
     if (worth_resuming) fmt::print(stderr, "to go on: scree run --resume {}\n", out.string());
   };
@@ -194,7 +196,7 @@ int run_run(const RunOptions& options) {
   int code = kOk;
   for (SeedRun& run : runs) {
     if (!run.failure.empty()) {
-      code = std::max<int>(code, run.blew_up ? kWatchFailed : kFailed);
+      code = std::max<int>(code, run.blew_up ? kWatchFailed : run.does_not_fit ? kBadInput : kFailed);
       fmt::print(stderr, "seed {}: {}\n", run.seed, run.failure);
       failures.push_back(fmt::format("seed {}: {}", run.seed, run.failure));
     }

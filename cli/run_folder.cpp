@@ -8,8 +8,10 @@
 #include <xxhash.h>
 
 #include <cerrno>
+#include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "cli/commands.h"
 #include "cli/ensemble/run_request.h"
@@ -68,13 +70,19 @@ void remove_record(const fs::path& folder) {
   fs::remove(record_in(folder), ignored);
 }
 
-FolderLock::FolderLock(const fs::path& folder)
+FolderLock::FolderLock(const fs::path& folder, double patience)
     : file_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (file_ < 0 || flock(file_, LOCK_EX | LOCK_NB) == 0) return;  // a file system without locks has none
-  const bool taken = errno == EWOULDBLOCK;
-  close(file_);
-  file_ = -1;
-  if (taken) throw std::runtime_error(fmt::format("{}: another scree works in it", folder.string()));
+  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience);
+  while (file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) != 0) {
+    const bool taken = errno == EWOULDBLOCK;
+    if (taken && std::chrono::steady_clock::now() < until) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      continue;
+    }
+    close(file_);
+    file_ = -1;  // a file system without locks has none
+    if (taken) throw std::runtime_error(fmt::format("{}: another scree works in it", folder.string()));
+  }
 }
 
 FolderLock::~FolderLock() {

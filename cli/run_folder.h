@@ -35,10 +35,10 @@ RunRecord read_record(const std::filesystem::path& folder);
 void remove_record(const std::filesystem::path& folder);
 
 /// Holds a run folder for this process while it lives; none other works in it. Throws std::runtime_error if
-/// another does.
+/// another still does after `patience` seconds: one that was just killed may be ending.
 class FolderLock {
  public:
-  explicit FolderLock(const std::filesystem::path& folder);
+  explicit FolderLock(const std::filesystem::path& folder, double patience = 0);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;

@@ -157,6 +157,9 @@ void run_seed(const scree::Scenario& scenario, SeedRun& run, const SeedSettings&
   } catch (const scree::BlowUp& error) {
     run.failure = error.what();
     run.blew_up = true;
+  } catch (const scree::StateError& error) {
+    run.failure = error.what();
+    run.does_not_fit = true;
   } catch (const std::invalid_argument& error) {
     run.failure = error.what();
   } catch (const std::bad_alloc&) {

@@ -240,7 +240,9 @@ DiagnosisVerdict verdict_of(const Diagnosis& d) {
     if (first == all.size() && is_effect(all[k]) && all[k].gap.p > kFitsAbove) first = k;
   }
   // What re-calibration leaves may still be chance: anything else must be much more probable.
-  const double leading = std::max(unknown, first < all.size() ? all[first].probability : 0.0);
+  double leading = unknown;
+  for (const Judgement& j : all)
+    if (is_effect(j)) leading = std::max(leading, j.probability);
   if (d.calibration.probability * kApartBy > leading) return {Kind::calibration, {}};
   if (first == all.size() || unknown > all[first].probability) return {Kind::unknown, {}};
   DiagnosisVerdict verdict{Kind::effect, {first}};

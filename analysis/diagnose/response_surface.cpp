@@ -25,9 +25,9 @@ constexpr double kLogSizeMean = 0, kLogSizeStd = 2;
 constexpr double kLogHatMean = -3, kLogHatStd = 1.5;  // hats are for what polynomials cannot do
 constexpr int kMostSweeps = 6;
 
-// 1 at the knot, 0 from its neighbours on; for amplitudes of either sign.
+// 1 at the knot, 0 from its neighbours on; knots of negative amplitudes are negative.
 double hat(double amplitude, int knot) {
-  return std::max(0.0, 1 - std::abs((kHats + 1) * std::abs(amplitude) - knot));
+  return std::max(0.0, 1 - std::abs((kHats + 1) * amplitude - knot));
 }
 
 double power(double x, int n) {
@@ -76,7 +76,9 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
     add(kEffect1, 1, 0);
     add(kEffect2, 2, 0);
     add(kEffect3, 3, 0);
-    for (int knot = 1; knot <= kHats; ++knot) {
+    for (int knot = -kHats; knot <= kHats; ++knot) {
+      if (knot == 0 || (knot < 0 ? space.effects[e].lowest() >= 0 : space.effects[e].highest() <= 0))
+        continue;
       add(kHat, 0, 0);
       terms_.back().hat = knot;
       terms_.back().group += static_cast<int>(space.effects.size());
@@ -107,7 +109,7 @@ void ResponseSurface::values(const ModelPoint& point, std::vector<Eigen::Index>&
     if (term.effect >= 0) {
       const EffectAt* effect = there[static_cast<std::size_t>(term.effect)];
       if (effect == nullptr) continue;
-      product = term.hat > 0 ? hat(effect->amplitude(), term.hat) : power(effect->amplitude(), term.power);
+      product = term.hat != 0 ? hat(effect->amplitude(), term.hat) : power(effect->amplitude(), term.power);
       if (product == 0) continue;
       if (term.other > 0) product *= effect->at[term.other];
     }

@@ -57,7 +57,7 @@ class ResponseSurface {
     int effect = -1, power = 0;   // of the amplitude
     int other = 0;                // a further parameter of the effect, from 1; 0: none
     int second = -1;              // the other effect of a product
-    int hat = 0;                  // from 1: in place of a power, the hat at this knot of the amplitude
+    int hat = 0;                  // not 0: in place of a power, the hat at this knot of the amplitude
   };
   void make_terms(const ModelSpace& space, const std::vector<DesignRun>& runs);
   // The terms that do not vanish at a point, and their values.

@@ -198,6 +198,14 @@ DiagnosisSession::DiagnosisSession(const DiagnosisModel& model, JoinedData data,
   everything_.resize(data_.experiments.size());
 }
 
+int DiagnosisSession::most_further() const {
+  // A round simulates the calibrated model and the leading effect; the first its rivals, too; the end what is
+  // named.
+  const int points = 2 * kMostRounds + static_cast<int>(kMostRivals) + 1;
+  return static_cast<int>(design_.size()) *
+         (points * model_.simulations.check + kExplored * model_.simulations.effect);
+}
+
 void DiagnosisSession::learn_from(const std::vector<ExperimentRuns>& runs, const RunThrough& run,
                                   DiagnosisOutcome& outcome) {
   // The short experiments wait for nothing: all runs of all experiments go together.

@@ -69,6 +69,8 @@ class DiagnosisSession {
   const JoinedData& data() const { return data_; }
   /// Simulations of the design, by experiment.
   const std::vector<ExperimentRuns>& design() const { return design_; }
+  /// Simulations that may follow the design.
+  int most_further() const;
   /// Throws Stopped; std::runtime_error if too few simulations gave the numbers; what `run` throws.
   DiagnosisOutcome run(const RunThrough& run);
 

@@ -126,7 +126,7 @@ class Ensemble {
     under_way_[run.key] = &run;
     tried_.insert(run.key);
     const fs::path folder = folder_of(run.key);
-    if (has_checkpoint(run.key)) {
+    if (has_checkpoint(run.key) && !refused_.contains(run.key)) {
       resumed_.insert(run.key);
       return executor_.start({run.key, folder, true});
     }
@@ -161,21 +161,22 @@ class Ensemble {
         failure = error.what();
       }
     }
-    if (ended.end == JobEnd::interrupted && has_checkpoint(ended.key)) {
-      store_.release(ended.key);
-      waiting_.push_back(request);
-      return;
-    }
-    forget_folder(ended.key);
     if (ended.end == JobEnd::refused && resumed) {
-      // Of another version of the program, or damaged: it begins anew.
+      // Of another version of the program, or of another run: it begins anew.
+      refused_.insert(ended.key);
+      ++progress_.begun_anew;
+      progress_.why_anew = ended.message;
+      forget_folder(ended.key);
       store_.release(ended.key);
       waiting_.insert(waiting_.begin(), request);
       return;
     }
+    // A run that was killed or lacked memory or disk has left its checkpoint, one that blew up has not.
+    const bool may_go_on = ended.end != JobEnd::good && has_checkpoint(ended.key);
     if (ended.end == JobEnd::interrupted) {
       // By a signal to all, which ends the loop as well, or to this run alone: then it is done again.
       if (++interrupted_[ended.key] < kMostInterruptions) {
+        if (!may_go_on) forget_folder(ended.key);
         store_.release(ended.key);
         waiting_.push_back(request);
         return;
@@ -185,6 +186,7 @@ class Ensemble {
     const bool ours = failure.empty() ? store_.finish(ended.key, text, outputs, seconds)
                                       : store_.fail(ended.key, failure, seconds);
     if (!ours) return;  // it was taken for dead, and another program does the run now
+    if (!may_go_on) forget_folder(ended.key);
     ++progress_.ended_here;
     failure.empty() ? ++progress_.done : ++progress_.failed;
   }
@@ -195,7 +197,7 @@ class Ensemble {
   std::vector<const RunRequest*> waiting_, left_to_others_;
   std::map<std::string, const RunRequest*> under_way_;
   std::map<std::string, int> interrupted_;  // how often, by key
-  std::set<std::string> tried_, resumed_;
+  std::set<std::string> tried_, resumed_, refused_;
   double looked_ = 0;
   EnsembleProgress progress_;
 };

@@ -23,6 +23,8 @@ struct EnsembleProgress {
   std::size_t here = 0;        ///< under way in this program
   std::size_t others = 0;      ///< under way in others
   std::size_t ended_here = 0;  ///< ended in this program, well or badly
+  std::size_t begun_anew = 0;  ///< whose checkpoint was refused
+  std::string why_anew;        ///< the last of them
   double share_under_way = 0;  ///< sum of the shares done of the runs under way in this program
 };
 

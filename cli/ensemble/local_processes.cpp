@@ -53,7 +53,10 @@ std::string words_in(const std::filesystem::path& log) {
   std::string of_seed, last;
   for (const std::string& line : lines_of(log)) {
     if (share_of(line)) continue;
-    if (line.starts_with("seed ") && line.find("particle-steps/s") == std::string::npos) of_seed = line;
+    const std::size_t end = line.find_first_not_of("0123456789", 5);
+    if (line.starts_with("seed ") && end != std::string::npos && line[end] == ':' &&
+        line.find("particle-steps/s") == std::string::npos)
+      of_seed = line;
     last = line;
   }
   return of_seed.empty() ? last : of_seed;

@@ -113,9 +113,23 @@ TEST_F(SweepCli, KilledInTheMiddleOfARunItGoesOnFromItsCheckpoint) {
     ASSERT_LT(round, 100) << "it comes no further";
     const pid_t child =
         start({"sweep", sweep, "--checkpoint-minutes", "0.003", "--store", in_folder("killed.sqlite")});
-    const auto begin = std::chrono::steady_clock::now();
+    // Killed as soon as there is a checkpoint that was not there before.
+    const auto checkpoints = [&] {
+      std::set<std::string> found;
+      std::error_code none;
+      for (const auto& entry : fs::recursive_directory_iterator(folder / "killed.sqlite.work", none))
+        if (const std::string name = entry.path().filename().string();
+            name.starts_with("checkpoint_") && !name.ends_with(".part"))
+          found.insert(name);
+      return found;
+    };
+    const std::set<std::string> before = checkpoints();
+    const auto further = [&] {
+      const std::set<std::string> now = checkpoints();
+      return std::any_of(now.begin(), now.end(), [&](const auto& name) { return !before.contains(name); });
+    };
     int status = 0;
-    while (!ended && std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(700 + 50 * round)) {
+    while (!ended && !further()) {
       ended = waitpid(child, &status, WNOHANG) == child;
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }

@@ -162,5 +162,31 @@ TEST(ResponseSurface, LearnsScatterAndForetellsWithinItsUncertainty) {
   EXPECT_GT(sum / count, 0.2);
 }
 
+// An effect that has done all it can at a third of its range, of either sign differently.
+TEST(ResponseSurface, FollowsAnEffectThatSaturates) {
+  ModelSpace space;
+  space.base = {{"material.mu", 0, -1, 1}};
+  space.effects = {{"sticky", "sticky", 0, {{"effects.sticky.size", "", -1, 1}}, {"one"}}};
+  const auto truth = [](double base, double x) {
+    return 2 * base + (x > 0 ? 12 * std::min(x, 0.35) : 2 * x);
+  };
+  std::vector<DesignRun> runs;
+  Random random(3, 0, RandomPurpose::design);
+  const auto add = [&](double base, double x) {
+    ModelPoint at{Eigen::VectorXd::Constant(1, base), {}};
+    if (x != 0) at.effects.push_back({0, Eigen::VectorXd::Constant(1, x)});
+    runs.push_back({at, Eigen::VectorXd::Constant(1, truth(base, x) + 0.1 * random.uniform(-1, 1))});
+  };
+  for (int k = 0; k < 20; ++k) add(random.uniform(-1, 1), 0);
+  for (int k = 1; k <= 14; ++k) add(random.uniform(-1, 1), k / 14.0), add(random.uniform(-1, 1), -k / 14.0);
+  const ResponseSurface surface(space, "one", runs);
+  for (const double x : {-0.9, -0.6, -0.35, -0.2, 0.2, 0.35, 0.6, 0.9}) {
+    const SurfacePrediction p =
+        surface.at({Eigen::VectorXd::Constant(1, 0.3), {{0, Eigen::VectorXd::Constant(1, x)}}});
+    EXPECT_NEAR(p.mean[0], truth(0.3, x), 0.35) << x;  // a polynomial of third order is off by 0.8
+    EXPECT_LT(std::abs(p.mean[0] - truth(0.3, x)), 4 * std::sqrt(p.covariance(0, 0))) << x;
+  }
+}
+
 }  // namespace
 }  // namespace scree

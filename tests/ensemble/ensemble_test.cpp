@@ -128,7 +128,10 @@ TEST_F(Runs, ThoseWithACheckpointGoOnFromIt) {
                         << resumed << "\nelse out=$4; echo anew >> " << begun << R"(
   if [ ! -e )" << (folder / "refusing").string()
                         << R"( ]; then
-    mkdir -p $out/seed_1; touch $out/resume.json $out/seed_1/checkpoint_1; exec sleep 100
+    mkdir -p $out/seed_1; touch $out/resume.json $out/seed_1/checkpoint_1
+    if [ -e )" << (folder / "killing").string()
+                        << R"( ]; then kill -9 $$; fi
+    exec sleep 100
   fi
   mkdir -p $out
 fi
@@ -159,6 +162,20 @@ END
     EXPECT_EQ(store.find("key0")->wall_seconds, 500) << "of all its parts";
     EXPECT_FALSE(fs::exists(folder / "store.sqlite.work"));
   }
+  {  // One that was killed alone has failed, and is resumed when it is tried again.
+    ResultsStore store(folder / "killed.sqlite");
+    LocalProcesses processes(2, 5, file);
+    fs::remove(folder / "begun");
+    std::ofstream(folder / "killing") << "yes";
+    EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
+    EXPECT_EQ(end.failed, 2u);
+    EXPECT_EQ(store.find("key0")->message, "killed by signal 9");
+    end = run_ensemble(requests, store, processes, {"1", true}, go_on);
+    EXPECT_EQ(end.done, 2u);
+    EXPECT_EQ(this->begun(), (std::vector<std::string>{"anew", "anew", "resumed", "resumed"}));
+    fs::remove(folder / "begun");
+    fs::remove(folder / "killing");
+  }
   {  // Checkpoints of another version of the program are refused: the run begins anew.
     ResultsStore store(folder / "other.sqlite");
     interrupted_at_checkpoints(store);
@@ -169,6 +186,8 @@ END
     const EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
     EXPECT_EQ(end.done, 2u);
     EXPECT_EQ(end.failed, 0u);
+    EXPECT_EQ(end.begun_anew, 2u);
+    EXPECT_NE(end.why_anew.find("of another version"), std::string::npos) << end.why_anew;
     EXPECT_EQ(this->begun(), (std::vector<std::string>{"resumed", "anew", "resumed", "anew"}));
     EXPECT_LT(store.find("key0")->wall_seconds, 100);
   }
