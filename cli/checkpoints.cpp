@@ -10,7 +10,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kKept = 2;
-constexpr const char kName[] = "checkpoint_";
 constexpr const char kFinished[] = "finished";
 
 // By number, rising.
@@ -19,8 +18,8 @@ std::vector<std::pair<int, fs::path>> checkpoints_in(const fs::path& folder) {
   std::error_code none;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, none)) {
     const std::string name = entry.path().filename().string();
-    if (!name.starts_with(kName) || name.ends_with(".part")) continue;
-    const std::string digits = name.substr(sizeof kName - 1);
+    if (!name.starts_with(scree::kCheckpointName) || name.ends_with(".part")) continue;
+    const std::string digits = name.substr(scree::kCheckpointName.size());
     if (digits.empty() || digits.size() > 9 || digits.find_first_not_of("0123456789") != std::string::npos)
       continue;
     found.emplace_back(std::stoi(digits), entry.path());
@@ -83,7 +82,7 @@ void Checkpoints::save(double time, const std::function<void(scree::StateWriter&
   auto found = checkpoints_in(folder_);
   const int number = found.empty() ? 1 : found.back().first + 1;
   header_.time = time;
-  const fs::path file = folder_ / fmt::format("{}{:06}", kName, number);
+  const fs::path file = folder_ / fmt::format("{}{:06}", scree::kCheckpointName, number);
   scree::write_checkpoint(file, header_, state);
   found.emplace_back(number, file);
   std::error_code ignored;
@@ -99,18 +98,13 @@ void Checkpoints::finish(double time, const std::function<void(scree::StateWrite
   for (const auto& [number, file] : checkpoints_in(folder_)) fs::remove(file, ignored);
 }
 
-bool Checkpoints::any_in(const fs::path& folder) {
-  std::error_code none;
-  return fs::exists(folder / kFinished, none) || !checkpoints_in(folder).empty();
-}
-
 void Checkpoints::remove_from(const fs::path& folder) {
   std::error_code ignored;
   fs::remove(folder / kFinished, ignored);
   for (const auto& [number, file] : checkpoints_in(folder)) fs::remove(file, ignored);
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))  // of one that was killed
     if (const std::string name = entry.path().filename().string();
-        (name.starts_with(kName) || name.starts_with(kFinished)) && name.ends_with(".part"))
+        (name.starts_with(scree::kCheckpointName) || name.starts_with(kFinished)) && name.ends_with(".part"))
       fs::remove(entry.path(), ignored);
   fs::remove(folder, ignored);  // if that was all
 }

@@ -28,8 +28,6 @@ class Checkpoints {
   /// Keeps the outcome of the seed instead of its checkpoints.
   void finish(double time, const std::function<void(scree::StateWriter&)>& outcome);
 
-  /// Whether a folder of a seed holds any.
-  static bool any_in(const std::filesystem::path& folder);
   /// Takes all of them away.
   static void remove_from(const std::filesystem::path& folder);
 

@@ -9,6 +9,9 @@
 /// Exit codes of scree. kWatchFailed: a run broke the physics watch (sim/scene/watch.h) or blew up.
 enum ExitCode { kOk = 0, kFailed = 1, kBadInput = 2, kWatchFailed = 3, kInterrupted = 130 };
 
+/// Wall time between checkpoints of a run, where nothing else is said.
+inline constexpr double kCheckpointMinutes = 5;
+
 struct RunOptions {
   std::filesystem::path file;
   std::vector<std::string> overrides;
@@ -24,10 +27,10 @@ struct RunOptions {
 
 /// How the runs of an ensemble are done and kept.
 struct EnsembleOptions {
-  std::filesystem::path store;    ///< empty: runs/store.sqlite
-  int jobs = 0;                   ///< runs side by side; 0: as many as cores
-  bool again = false;             ///< try runs that failed before again
-  double checkpoint_minutes = 5;  ///< wall time between checkpoints of a run; 0: none
+  std::filesystem::path store;                     ///< empty: runs/store.sqlite
+  int jobs = 0;                                    ///< runs side by side; 0: as many as cores
+  bool again = false;                              ///< try runs that failed before again
+  double checkpoint_minutes = kCheckpointMinutes;  ///< of each run; 0: none
 };
 
 struct SweepOptions {

@@ -43,7 +43,6 @@ std::vector<std::uint64_t> chosen_seeds(const scree::Scenario& scenario, int cou
   return seeds;
 }
 
-constexpr double kCheckpointMinutes = 5;
 constexpr double kDying = 10;  // s that a killed process may take to end
 
 /// What is to be run, where.

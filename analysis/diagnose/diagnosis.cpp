@@ -234,15 +234,13 @@ DiagnosisVerdict verdict_of(const Diagnosis& d) {
   if (d.calibration.gap.p > kFitsAbove) return {Kind::calibration, {}};
   const auto& all = d.judgements;
   std::size_t first = all.size();
-  double unknown = 0;
+  double unknown = 0, leading = 0;  // of the unknown; of all but calibration
   for (std::size_t k = 0; k < all.size(); ++k) {
+    if (all[k].hypothesis.unknown || is_effect(all[k])) leading = std::max(leading, all[k].probability);
     if (all[k].hypothesis.unknown) unknown = all[k].probability;
     if (first == all.size() && is_effect(all[k]) && all[k].gap.p > kFitsAbove) first = k;
   }
   // What re-calibration leaves may still be chance: anything else must be much more probable.
-  double leading = unknown;
-  for (const Judgement& j : all)
-    if (is_effect(j)) leading = std::max(leading, j.probability);
   if (d.calibration.probability * kApartBy > leading) return {Kind::calibration, {}};
   if (first == all.size() || unknown > all[first].probability) return {Kind::unknown, {}};
   DiagnosisVerdict verdict{Kind::effect, {first}};

@@ -151,7 +151,7 @@ ResponseSurface::Fit ResponseSurface::fit(const Eigen::MatrixXd& features, const
     log_density -= factor.matrixLLT().diagonal().array().log().sum();
     log_density -= 0.5 * static_cast<double>(n) * std::log(misfit);
     for (Eigen::Index g = 0; g < groups_; ++g) {
-      const bool hats = 2 * g >= groups_ + 1;
+      const bool hats = g > static_cast<Eigen::Index>(acts_.size());
       const double z =
           (std::log(size[g]) - (hats ? kLogHatMean : kLogSizeMean)) / (hats ? kLogHatStd : kLogSizeStd);
       log_density -= 0.5 * z * z;

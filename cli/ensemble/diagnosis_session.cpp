@@ -191,11 +191,17 @@ DiagnosisSession::DiagnosisSession(const DiagnosisModel& model, JoinedData data,
       data_(std::move(data)),
       asset_dir_(std::move(asset_dir)),
       space_(space_of(model, data_.experiments, without)) {
-  const std::vector<PlannedRun> planned = design_of(space_, model.simulations);
-  for (const Dataset::Experiment& experiment : data_.experiments)
-    design_.push_back(runs_of(model, space_, experiment, planned, asset_dir_));
+  design_ = in_every_experiment(design_of(space_, model.simulations));
   learnt_.resize(data_.experiments.size());
   everything_.resize(data_.experiments.size());
+}
+
+std::vector<ExperimentRuns> DiagnosisSession::in_every_experiment(
+    const std::vector<PlannedRun>& planned) const {
+  std::vector<ExperimentRuns> runs;
+  for (const Dataset::Experiment& experiment : data_.experiments)
+    runs.push_back(runs_of(model_, space_, experiment, planned, asset_dir_));
+  return runs;
 }
 
 int DiagnosisSession::most_further() const {
@@ -284,10 +290,7 @@ void DiagnosisSession::explore(const Judgement& judgement, const RunThrough& run
   std::vector<PlannedRun> planned;
   for (const ModelPoint& point : where_to_learn(space_, judgement, model_.simulations.effect))
     planned.push_back({point, kCheckSeeds + ++checks_});
-  std::vector<ExperimentRuns> runs;
-  for (const Dataset::Experiment& experiment : data_.experiments)
-    runs.push_back(runs_of(model_, space_, experiment, planned, asset_dir_));
-  learn_from(runs, run, outcome);
+  learn_from(in_every_experiment(planned), run, outcome);
 }
 
 std::vector<NextMeasurement> DiagnosisSession::tell_apart(const DiagnosisOutcome& outcome) const {
@@ -362,17 +365,17 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   for (int round = 0; round < kMostRounds && !outcome.settled; ++round) {
     ++outcome.rounds;
     bool fresh = false;
+    // Whether there was anything to simulate.
     const auto show = [&](const ModelPoint& point, std::optional<SimulatedModel>& shown) {
-      if (shown && !moved(shown->at, point)) return;
+      if (shown && !moved(shown->at, point)) return false;
       shown = simulate(point, run, outcome);
       fresh = true;
+      return true;
     };
     show(d.calibration.best, calibrated);
     if (d.calibration.gap.p <= kFitsAbove)
       if (const Judgement* lead = best_effect(d)) {
-        const bool known = augmented && !moved(augmented->at, lead->best);
-        show(lead->best, augmented);
-        if (!known && round < kExplored) explore(*lead, run, outcome);
+        if (show(lead->best, augmented) && round < kExplored) explore(*lead, run, outcome);
         std::size_t rivals = 0;
         for (const Judgement& j : d.judgements)
           if (round == 0 && &j != lead && !j.hypothesis.effects.empty() && rivals < kMostRivals &&

@@ -75,6 +75,7 @@ class DiagnosisSession {
   DiagnosisOutcome run(const RunThrough& run);
 
  private:
+  std::vector<ExperimentRuns> in_every_experiment(const std::vector<PlannedRun>& planned) const;
   void learn_from(const std::vector<ExperimentRuns>& runs, const RunThrough& run, DiagnosisOutcome& outcome);
   SimulatedModel simulate(const ModelPoint& point, const RunThrough& run, DiagnosisOutcome& outcome);
   // Learns from simulations spread over what the data leave open of a hypothesis.

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "analysis/summary.h"
+#include "sim/io/checkpoint_file.h"
 #include "sim/io/text_file.h"
 
 namespace scree {
@@ -93,7 +94,7 @@ class Ensemble {
   bool has_checkpoint(const std::string& key) const {
     std::error_code none;
     for (const auto& entry : fs::recursive_directory_iterator(folder_of(key) / "run", none))
-      if (entry.path().filename().string().starts_with("checkpoint_")) return true;
+      if (entry.path().filename().string().starts_with(kCheckpointName)) return true;
     return false;
   }
 
@@ -126,10 +127,8 @@ class Ensemble {
     under_way_[run.key] = &run;
     tried_.insert(run.key);
     const fs::path folder = folder_of(run.key);
-    if (has_checkpoint(run.key) && !refused_.contains(run.key)) {
-      resumed_.insert(run.key);
+    if (has_checkpoint(run.key) && !refused_.contains(run.key))
       return executor_.start({run.key, folder, true});
-    }
     std::error_code error;
     fs::remove_all(folder, error);  // of one that was killed
     // Another program that has just ended may take the empty parent away in between.
@@ -146,7 +145,6 @@ class Ensemble {
     std::string failure = ended.message, text;
     std::map<std::string, double> outputs;
     double seconds = ended.wall_seconds;
-    const bool resumed = resumed_.erase(ended.key) > 0;
     if (ended.end == JobEnd::good) {
       try {
         std::ifstream in(folder_of(ended.key) / "run" / "summary.json");
@@ -156,12 +154,12 @@ class Ensemble {
         StoredRun run = parse_summary(text);
         if (run.outputs.size() != 1) throw std::runtime_error("a summary of one seed is expected");
         outputs = std::move(run.outputs.front());
-        if (resumed) seconds = std::max(seconds, run.wall_seconds.front());
+        if (ended.resumed) seconds = std::max(seconds, run.wall_seconds.front());
       } catch (const std::runtime_error& error) {
         failure = error.what();
       }
     }
-    if (ended.end == JobEnd::refused && resumed) {
+    if (ended.end == JobEnd::refused && ended.resumed) {
       // Of another version of the program, or of another run: it begins anew.
       refused_.insert(ended.key);
       ++progress_.begun_anew;
@@ -197,7 +195,7 @@ class Ensemble {
   std::vector<const RunRequest*> waiting_, left_to_others_;
   std::map<std::string, const RunRequest*> under_way_;
   std::map<std::string, int> interrupted_;  // how often, by key
-  std::set<std::string> tried_, resumed_, refused_;
+  std::set<std::string> tried_, refused_;
   double looked_ = 0;
   EnsembleProgress progress_;
 };

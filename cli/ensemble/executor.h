@@ -26,6 +26,7 @@ struct EndedJob {
   JobEnd end = JobEnd::bad;
   std::string message;  ///< the last words of one that ended badly
   double wall_seconds = 0;
+  bool resumed = false;  ///< Job::resume
 };
 
 class Executor {

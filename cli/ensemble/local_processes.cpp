@@ -117,7 +117,8 @@ std::optional<EndedJob> LocalProcesses::wait(double patience) {
                      : code == kBadInput    ? JobEnd::refused
                                             : JobEnd::bad,
                      {},
-                     now() - process->started};
+                     now() - process->started,
+                     process->job.resume};
       if (ended.end == JobEnd::bad || ended.end == JobEnd::refused) {
         const std::string words = words_in(process->job.folder / "log.txt");
         ended.message = WIFSIGNALED(status) ? fmt::format("killed by signal {}", WTERMSIG(status))

@@ -16,10 +16,14 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "sim/io/state_stream.h"
 
 namespace scree {
+
+/// How names of checkpoint files begin; a number follows.
+inline constexpr std::string_view kCheckpointName = "checkpoint_";
 
 /// What a checkpoint is of.
 struct CheckpointHeader {

@@ -2,11 +2,13 @@
 // The program called as a user calls it.
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "scree_version.h"
 
@@ -33,6 +35,18 @@ inline Called call(const std::string& arguments) {
 inline Called call_in(const std::filesystem::path& folder, const std::string& arguments, int seconds) {
   return called("SOURCE=" SCREE_SOURCE_DIR "; cd " + folder.string() + " && timeout " +
                 std::to_string(seconds) + " " SCREE_BINARY " " + arguments);
+}
+
+/// The whole checkpoints anywhere below a folder, by name.
+inline std::vector<std::filesystem::path> checkpoints_below(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> found;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, none)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("checkpoint_") && !name.ends_with(".part")) found.push_back(entry.path());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
 }
 
 inline std::string slurp(const std::filesystem::path& file) {

@@ -79,23 +79,13 @@ class ResumeCli : public testing::Test {
   // Sends a signal when there are `count` checkpoints; the exit status.
   int stop_at(pid_t child, const fs::path& out, std::size_t count, int signal) const {
     int status = 0;
-    for (int k = 0; k < 30000 && checkpoints(out).size() < count; ++k) {
+    for (int k = 0; k < 30000 && checkpoints_below(out).size() < count; ++k) {
       if (waitpid(child, &status, WNOHANG) == child) return status;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     kill(child, signal);
     waitpid(child, &status, 0);
     return status;
-  }
-  static std::vector<fs::path> checkpoints(const fs::path& out) {
-    std::vector<fs::path> found;
-    std::error_code none;
-    for (const auto& entry : fs::recursive_directory_iterator(out, none)) {
-      const std::string name = entry.path().filename().string();
-      if (name.starts_with("checkpoint_") && !name.ends_with(".part")) found.push_back(entry.path());
-    }
-    std::sort(found.begin(), found.end());
-    return found;
   }
   static void flip(const fs::path& file) {
     std::string bytes = slurp(file);
@@ -162,7 +152,7 @@ TEST_F(ResumeCli, InterruptSavesAndSaysHowToGoOn) {
   waitpid(child, &status, 0);
   EXPECT_EQ(WEXITSTATUS(status), 130);
   EXPECT_THAT(slurp(folder / "log"), HasSubstr("to go on: scree run --resume " + in_folder("run")));
-  ASSERT_EQ(checkpoints(folder / "run").size(), 1u);
+  ASSERT_EQ(checkpoints_below(folder / "run").size(), 1u);
   const Called resumed = call("run --resume " + in_folder("run"));
   EXPECT_EQ(resumed.code, 0) << resumed.text;
   EXPECT_THAT(resumed.text, HasSubstr("goes on from t = "));
@@ -177,7 +167,7 @@ TEST_F(ResumeCli, DamagedCheckpointsArePassedOver) {
   for (const std::size_t damaged : {1, 2}) {
     const std::string name = "run" + std::to_string(damaged);
     stop_at(start(words(in_folder(name), 1, kOften)), folder / name, 2, SIGKILL);
-    std::vector<fs::path> found = checkpoints(folder / name);
+    std::vector<fs::path> found = checkpoints_below(folder / name);
     ASSERT_GE(found.size(), 2u);
     for (std::size_t k = 0; k < damaged; ++k) flip(found[found.size() - 1 - k]);
     if (damaged == 2)
@@ -233,7 +223,7 @@ TEST_F(ResumeCli, ImpulseBeginsAnewAndSaysSo) {
   int status = 0;
   waitpid(child, &status, 0);
   EXPECT_EQ(WEXITSTATUS(status), 130);
-  EXPECT_TRUE(checkpoints(folder / "run").empty());
+  EXPECT_TRUE(checkpoints_below(folder / "run").empty());
   const Called resumed = call("run --resume " + in_folder("run"));
   EXPECT_EQ(resumed.code, 0) << resumed.text;
   EXPECT_THAT(resumed.text, HasSubstr("begins at its beginning"));

@@ -114,19 +114,11 @@ TEST_F(SweepCli, KilledInTheMiddleOfARunItGoesOnFromItsCheckpoint) {
     const pid_t child =
         start({"sweep", sweep, "--checkpoint-minutes", "0.003", "--store", in_folder("killed.sqlite")});
     // Killed as soon as there is a checkpoint that was not there before.
-    const auto checkpoints = [&] {
-      std::set<std::string> found;
-      std::error_code none;
-      for (const auto& entry : fs::recursive_directory_iterator(folder / "killed.sqlite.work", none))
-        if (const std::string name = entry.path().filename().string();
-            name.starts_with("checkpoint_") && !name.ends_with(".part"))
-          found.insert(name);
-      return found;
-    };
-    const std::set<std::string> before = checkpoints();
+    const fs::path work = folder / "killed.sqlite.work";
+    const std::vector<fs::path> before = checkpoints_below(work);
     const auto further = [&] {
-      const std::set<std::string> now = checkpoints();
-      return std::any_of(now.begin(), now.end(), [&](const auto& name) { return !before.contains(name); });
+      const std::vector<fs::path> now = checkpoints_below(work);
+      return !std::includes(before.begin(), before.end(), now.begin(), now.end());
     };
     int status = 0;
     while (!ended && !further()) {
@@ -140,7 +132,7 @@ TEST_F(SweepCli, KilledInTheMiddleOfARunItGoesOnFromItsCheckpoint) {
       EXPECT_EQ(WEXITSTATUS(status), 0);
     }
     std::error_code none;
-    for (const auto& entry : fs::directory_iterator(folder / "killed.sqlite.work", none)) {
+    for (const auto& entry : fs::directory_iterator(work, none)) {
       std::smatch found;
       const std::string log = slurp(entry.path() / "log.txt");
       if (std::regex_search(log, found, std::regex("goes on from t = ([0-9.]+) s"))) goes_on.insert(found[1]);
