@@ -10,11 +10,12 @@
 #include "analysis/outputs.h"
 #include "analysis/report_text.h"
 #include "cli/commands.h"
-#include "cli/ensemble/dataset_file.h"
 #include "cli/ensemble/dataset_write.h"
 #include "cli/output_folder.h"
 #include "cli/snapshot_outputs.h"
+#include "cli/written_dataset.h"
 #include "sim/io/input_text.h"
+#include "sim/scene/scenario.h"
 
 namespace fs = std::filesystem;
 
@@ -119,16 +120,7 @@ int write_and_check(const AnalyseOptions& options, const scree::Scenario& scenar
   }
   draft.experiments.push_back(std::move(experiment));
   if (!prepare_folder(options.out, options.force)) return kBadInput;
-  const std::vector<std::string> left_out = scree::write_dataset(draft, options.out);
-  if (!left_out.empty())
-    fmt::print("note: not in the dataset, as nothing is known of their scatter: {}\n",
-               fmt::join(left_out, ", "));
-  const scree::DatasetResult check = scree::load_dataset(options.out / "dataset.yaml", asset_dir());
-  for (const scree::ScenarioError& error : check.errors) fmt::print(stderr, "{}\n", error.text());
-  if (!check.errors.empty()) return kFailed;
-  fmt::print("dataset: {} ({} observables)\n", (options.out / "dataset.yaml").string(),
-             check.dataset.observables.size());
-  return kOk;
+  return end_with_dataset(options.out, scree::write_dataset(draft, options.out));
 }
 
 }  // namespace

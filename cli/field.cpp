@@ -11,10 +11,11 @@
 #include "analysis/field/printed_values.h"
 #include "analysis/output_units.h"
 #include "cli/commands.h"
-#include "cli/ensemble/dataset_file.h"
 #include "cli/ensemble/field_dataset.h"
 #include "cli/output_folder.h"
+#include "cli/written_dataset.h"
 #include "sim/io/input_text.h"
+#include "sim/scene/scenario.h"
 
 namespace fs = std::filesystem;
 
@@ -99,15 +100,13 @@ int write_dataset_of(const FieldCliOptions& options, const scree::FieldAnalysis&
     notes = scree::write_field_dataset(field, request, folder);
   } catch (const std::invalid_argument& error) {
     fmt::print(stderr, "{}\n", error.what());
+    std::error_code ignored;  // nothing was written: no empty folder that looks like a dataset
+    fs::remove(folder, ignored);
+    fs::remove(options.out, ignored);
     return kBadInput;
   }
   for (const std::string& note : notes) fmt::print("note: {}\n", note);
-  const scree::DatasetResult check = scree::load_dataset(folder / "dataset.yaml", asset_dir());
-  for (const scree::ScenarioError& error : check.errors) fmt::print(stderr, "{}\n", error.text());
-  if (!check.errors.empty()) return kBadInput;
-  fmt::print("dataset: {} ({} observables)\n", (folder / "dataset.yaml").string(),
-             check.dataset.observables.size());
-  return kOk;
+  return end_with_dataset(folder);
 }
 
 }  // namespace

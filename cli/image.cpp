@@ -13,14 +13,15 @@
 #include "analysis/report_text.h"
 #include "analysis/results.h"
 #include "cli/commands.h"
-#include "cli/ensemble/dataset_file.h"
 #include "cli/ensemble/dataset_write.h"
 #include "cli/ensemble/scenario_patch.h"
 #include "cli/output_folder.h"
 #include "cli/picture_options.h"
+#include "cli/written_dataset.h"
 #include "scree_version.h"
 #include "sim/io/input_text.h"
 #include "sim/io/text_file.h"
+#include "sim/scene/scenario.h"
 
 namespace fs = std::filesystem;
 
@@ -171,16 +172,7 @@ int write_dataset_of(const ImageOptions& options, const scree::Scenario& scenari
         experiment.observables[fmt::format("{}_S{}", name, k)] = mean;
   }
   draft.experiments.push_back(std::move(experiment));
-  const std::vector<std::string> left_out = scree::write_dataset(draft, folder);
-  if (!left_out.empty())
-    fmt::print("note: not in the dataset, as nothing is known of their scatter: {}\n",
-               fmt::join(left_out, ", "));
-  const scree::DatasetResult check = scree::load_dataset(folder / "dataset.yaml", asset_dir());
-  for (const scree::ScenarioError& error : check.errors) fmt::print(stderr, "{}\n", error.text());
-  if (!check.errors.empty()) return kBadInput;
-  fmt::print("dataset: {} ({} observables)\n", (folder / "dataset.yaml").string(),
-             check.dataset.observables.size());
-  return kOk;
+  return end_with_dataset(folder, scree::write_dataset(draft, folder));
 }
 
 // What can be said before any picture is looked at.

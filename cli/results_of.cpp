@@ -158,7 +158,7 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
       r.sections.push_back(cone.surface);
       r.slope_angle = cone.shape.angle;
     } catch (const std::invalid_argument&) {
-      // A run that was ended early may have no cone yet.
+      // A small heap, or one of a run that was ended early; put_together says so.
     }
   } else if (outcome.rebound_height) {
     r.rebound_height = outcome.rebound_height;
@@ -197,6 +197,10 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
     if (!s.sections.empty()) left_out += s.sections.front().mass_outside;
     if (s.interrupted)
       result.notes.push_back(fmt::format("seed {} was ended by the user: its pile is not finished", s.seed));
+    else if (std::holds_alternative<BucketDump>(scenario.experiment) && s.sections.empty())
+      result.notes.push_back(fmt::format(
+          "seed {}: the heap is too low and wide to be cut as a cone: no sections; empty more buckets",
+          s.seed));
   }
   const bool impulse = scenario.engine == EngineKind::impulse;
   if (overlap > kOverlapWarning && impulse)

@@ -1,6 +1,6 @@
-// A few runs of the stored sweeps again: a change of physics shows, a change of roundings does not. Which
-// grains end where is as good as random, so that a run moves by as much as seeds differ when anything changes
-// the order of sums.
+// Two runs of the stored sweeps again, at their full size: a change of physics shows, a change of roundings
+// does not. Which grains end where is as good as random, so that a run moves by as much as seeds differ when
+// anything changes the order of sums.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,10 +36,7 @@ double scatter(const std::vector<PointResults>& points) {
 }
 
 TEST(Sweeps, StoredAnglesAreFoundAgain) {
-  const std::vector<Again> all{{"repose_lab", {"0.3", "0.1"}},
-                               {"repose_field_qb", {"0.4", "0.4"}},
-                               {"repose_lab", {"0.2", "0.4"}},
-                               {"repose_field_qb", {"0.6", "0.2"}}};
+  const std::vector<Again> all{{"repose_lab", {"0.3", "0.1"}}, {"repose_field_qb", {"0.4", "0.4"}}};
   std::vector<double> off(all.size());  // in deviations
   const auto run = [&](std::size_t first) {
     for (std::size_t k = first; k < all.size(); k += 2) {
@@ -63,14 +60,10 @@ TEST(Sweeps, StoredAnglesAreFoundAgain) {
   std::thread other(run, 1);
   run(0);
   other.join();
-  double sum = 0;
   for (const double each : off) {
     EXPECT_NE(each, 0.0);  // it was run
     EXPECT_LT(std::abs(each), 4);
-    sum += each;
   }
-  EXPECT_LT(std::abs(sum / static_cast<double>(off.size())),
-            2);  // 4 runs: 4 times the deviation of their mean
 }
 
 }  // namespace
