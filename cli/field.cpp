@@ -90,6 +90,14 @@ int write_dataset_of(const FieldCliOptions& options, const scree::FieldAnalysis&
   if (!loaded.errors.empty()) return kBadInput;
   const fs::path folder = options.out / "dataset";
   fs::create_directories(folder);
+  const auto refused = [&] {  // nothing stays that looks like a dataset
+    std::error_code ignored;
+    for (const char* file : {"dataset.yaml", "observables.csv", "covariance.csv"})
+      fs::remove(folder / file, ignored);
+    fs::remove(folder, ignored);
+    fs::remove(options.out, ignored);  // if that was all
+    return kBadInput;
+  };
   std::vector<std::string> notes;
   scree::FieldDatasetRequest request{
       options.scenario, {}, options.gradings.filename().string(), options.observables};
@@ -100,13 +108,11 @@ int write_dataset_of(const FieldCliOptions& options, const scree::FieldAnalysis&
     notes = scree::write_field_dataset(field, request, folder);
   } catch (const std::invalid_argument& error) {
     fmt::print(stderr, "{}\n", error.what());
-    std::error_code ignored;  // nothing was written: no empty folder that looks like a dataset
-    fs::remove(folder, ignored);
-    fs::remove(options.out, ignored);
-    return kBadInput;
+    return refused();
   }
   for (const std::string& note : notes) fmt::print("note: {}\n", note);
-  return end_with_dataset(folder);
+  const int code = end_with_dataset(folder);
+  return code == kOk ? kOk : refused();
 }
 
 }  // namespace
