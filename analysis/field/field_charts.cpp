@@ -55,9 +55,7 @@ std::string range_of(const FieldAnalysis& field) {
 
 Picture draw_envelopes(const FieldAnalysis& field, const fs::path& folder) {
   const fs::path file = folder / "envelopes.svg";
-  std::string common =
-      range_of(field) +
-      "set yrange [0:100]\nset key bottom right reverse Left samplen 1.5 font ',10' spacing 0.9\n";
+  std::string common = range_of(field) + "set yrange [0:100]\nunset key\n";
   common += "$whole << END\n";
   if (const Grading* whole = field.whole.curve(CurveKind::medians, false))
     for (const Grading::Point& p : whole->points())
@@ -65,30 +63,33 @@ Picture draw_envelopes(const FieldAnalysis& field, const fs::path& folder) {
   common += "END\n";
   const auto panel = [&](const FieldSection& section, std::string& blocks) {
     if (section.envelope.empty()) return std::string();
-    const bool first = &section == &field.sections.front();
     blocks += fmt::format("${} << END\n", section.name);
-    for (const EnvelopePoint& p : section.envelope)
-      blocks += fmt::format("{} {} {} {} {} {} {}\n", p.diameter, 100 * p.low95, 100 * p.high95,
-                            100 * p.low68, 100 * p.high68, 100 * p.median, 100 * p.mean);
+    bool median_ended = false, mean_ended = false;  // a curve ends where it comes to 100 %
+    for (const EnvelopePoint& p : section.envelope) {
+      const auto curve = [](double share, bool& ended) {
+        const std::string value = ended ? "NaN" : fmt::format("{}", 100 * share);
+        ended = ended || share >= 1;
+        return value;
+      };
+      blocks +=
+          fmt::format("{} {} {} {} {} {} {}\n", p.diameter, 100 * p.low95, 100 * p.high95, 100 * p.low68,
+                      100 * p.high68, curve(p.median, median_ended), curve(p.mean, mean_ended));
+    }
     blocks += "END\n";
-    const auto title = [&](const char* text) {
-      return first ? "title " + gnuplot_quoted(text) : std::string("notitle");
-    };
     return fmt::format(
         "set title '{0}' offset 0,-0.6\nset xlabel 'diameter (m)' offset 0,0.6\nset ylabel 'passing (%)' "
         "offset 1.5,0\n"
-        "plot ${0} using 1:2:3 with filledcurves fs solid 0.15 lc rgb '{1}' {2}, '' using 1:4:5 with "
-        "filledcurves fs "
-        "solid 0.35 lc rgb '{1}' {3}, '' using 1:6 with lines lw 1.8 lc rgb '{1}' {4}, '' using 1:7 with "
-        "lines lw 1.2 dt 2 "
-        "lc rgb '#333333' {5}, $whole using 1:2 with lines lw 1.2 lc rgb '{6}' {7}\n",
-        section.name, kBlue, title("95 %"), title("68 %"), title("median"), title("mean"), kOrange,
-        title("whole slope"));
+        "plot ${0} using 1:2:3 with filledcurves fs solid 0.15 lc rgb '{1}', '' using 1:4:5 with "
+        "filledcurves "
+        "fs solid 0.35 lc rgb '{1}', '' using 1:6 with lines lw 1.8 lc rgb '{1}', '' using 1:7 with lines lw "
+        "1.2 dt 2 lc rgb '#333333', $whole using 1:2 with lines lw 1.2 lc rgb '{2}'\n",
+        section.name, kBlue, kOrange);
   };
   draw_panels(field.sections, common, panel, file);
-  return {"Passing curves of the sections", file,
-          "Bands hold 68 and 95 % of the pictures at each diameter; the orange curve is the median of the "
-          "whole slopes."};
+  return {
+      "Passing curves of the sections", file,
+      "The dark band holds 68 %, the light one 95 % of the pictures at each diameter; blue is their median, "
+      "dashed their mean, orange the median of the whole slopes."};
 }
 
 std::string p_words(const NormalityTest& test) {
