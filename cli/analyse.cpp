@@ -100,9 +100,8 @@ void print_table(const std::map<std::string, scree::MeanStd>& table) {
   }
 }
 
-// Writes the dataset and reads it again; what a user gets is what diagnose would get.
-int write_and_check(const AnalyseOptions& options, const scree::Scenario& scenario,
-                    const std::map<std::string, scree::MeanStd>& table) {
+int write_dataset_of(const AnalyseOptions& options, const scree::Scenario& scenario,
+                     const std::map<std::string, scree::MeanStd>& table) {
   scree::DatasetDraft draft;
   draft.title = scenario.title.empty() ? scenario.name : scenario.title;
   std::vector<std::string> names;
@@ -119,8 +118,12 @@ int write_and_check(const AnalyseOptions& options, const scree::Scenario& scenar
       experiment.observables[name] = value;
   }
   draft.experiments.push_back(std::move(experiment));
-  if (!prepare_folder(options.out, options.force)) return kBadInput;
-  return end_with_dataset(options.out, scree::write_dataset(draft, options.out));
+  WrittenDataset dataset(options.out, options.out);
+  const int code = dataset.write(
+      [&](const fs::path& folder) { return note_of_left_out(scree::write_dataset(draft, folder)); });
+  if (code != kOk || !prepare_folder(options.out, options.force)) return kBadInput;
+  dataset.put_in_place();
+  return kOk;
 }
 
 }  // namespace
@@ -177,5 +180,5 @@ int run_analyse(const AnalyseOptions& options) {
   for (const std::string& line : found) fmt::print("{}\n", line);
   for (const std::string& note : notes) fmt::print("note: {}\n", note);
   print_table(table);
-  return options.out.empty() ? kOk : write_and_check(options, *scenario, table);
+  return options.out.empty() ? kOk : write_dataset_of(options, *scenario, table);
 }

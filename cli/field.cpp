@@ -83,36 +83,18 @@ std::optional<Inputs> read_inputs(const FieldCliOptions& options) {
   return inputs;
 }
 
-/// Writes dataset/ and reads it again; what a user gets is what diagnose would get.
-int write_dataset_of(const FieldCliOptions& options, const scree::FieldAnalysis& field, int sections) {
+int write_dataset_of(const FieldCliOptions& options, const scree::FieldAnalysis& field, int sections,
+                     WrittenDataset& dataset) {
   scree::ScenarioResult loaded = scree::load_scenario(options.scenario, {}, asset_dir());
   for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
   if (!loaded.errors.empty()) return kBadInput;
-  const fs::path folder = options.out / "dataset";
-  fs::create_directories(folder);
-  const auto refused = [&] {  // nothing stays that looks like a dataset
-    std::error_code ignored;
-    for (const char* file : {"dataset.yaml", "observables.csv", "covariance.csv"})
-      fs::remove(folder / file, ignored);
-    fs::remove(folder, ignored);
-    fs::remove(options.out, ignored);  // if that was all
-    return kBadInput;
-  };
-  std::vector<std::string> notes;
   scree::FieldDatasetRequest request{
       options.scenario, {}, options.gradings.filename().string(), options.observables};
   // The pile must be cut as the pictures are; that changes how it is looked at, not how it is made.
   if (loaded.scenario.output.sections != sections)
     request.overrides.push_back(fmt::format("output.sections={}", sections));
-  try {
-    notes = scree::write_field_dataset(field, request, folder);
-  } catch (const std::invalid_argument& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return refused();
-  }
-  for (const std::string& note : notes) fmt::print("note: {}\n", note);
-  const int code = end_with_dataset(folder);
-  return code == kOk ? kOk : refused();
+  return dataset.write(
+      [&](const fs::path& folder) { return scree::write_field_dataset(field, request, folder); });
 }
 
 }  // namespace
@@ -132,11 +114,15 @@ int run_field(const FieldCliOptions& given) {
     return kBadInput;
   }
   if (options.out.empty()) options.out = free_run_folder(options.gradings.stem().string());
+  if (!may_fill(options.out, options.force)) return kBadInput;
+  WrittenDataset dataset(options.out, options.out / "dataset");
+  const bool wanted = !options.scenario.empty();
+  if (wanted)
+    if (const int code = write_dataset_of(options, field, inputs->gradings.sections, dataset); code != kOk)
+      return code;
   if (!prepare_folder(options.out, options.force)) return kBadInput;
   for (const std::string& line : scree::field_in_words(field, printed)) fmt::print("{}\n", line);
-  if (!options.scenario.empty())
-    if (const int code = write_dataset_of(options, field, inputs->gradings.sections); code != kOk)
-      return code;
+  if (wanted) dataset.put_in_place();
   scree::write_field_report(options.gradings.stem().string(), field, printed, options.out);
   fmt::print("report: {}\n", (options.out / "report.html").string());
   return kOk;

@@ -151,7 +151,7 @@ std::string effects_yaml(const scree::ImageBias& bias, const fs::path& scenario,
 
 // Chi and D50 of every section, the pictures being repeats.
 int write_dataset_of(const ImageOptions& options, const scree::Scenario& scenario,
-                     const std::vector<scree::AnalysedPhoto>& photos, const fs::path& folder) {
+                     const std::vector<scree::AnalysedPhoto>& photos, const fs::path& out) {
   scree::DatasetDraft draft;
   draft.title = "Gradings from photographs";
   std::vector<std::string> names;
@@ -172,7 +172,11 @@ int write_dataset_of(const ImageOptions& options, const scree::Scenario& scenari
         experiment.observables[fmt::format("{}_S{}", name, k)] = mean;
   }
   draft.experiments.push_back(std::move(experiment));
-  return end_with_dataset(folder, scree::write_dataset(draft, folder));
+  WrittenDataset dataset(out, out);
+  const int code = dataset.write(
+      [&](const fs::path& folder) { return note_of_left_out(scree::write_dataset(draft, folder)); });
+  if (code == kOk) dataset.put_in_place();
+  return code;
 }
 
 // What can be said before any picture is looked at.

@@ -198,9 +198,10 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
     if (s.interrupted)
       result.notes.push_back(fmt::format("seed {} was ended by the user: its pile is not finished", s.seed));
     else if (std::holds_alternative<BucketDump>(scenario.experiment) && s.sections.empty())
-      result.notes.push_back(fmt::format(
-          "seed {}: the heap is too low and wide to be cut as a cone: no sections; empty more buckets",
-          s.seed));
+      result.notes.push_back(
+          fmt::format("seed {}: no cone can be fitted to the heap, and so it has no sections; more or larger "
+                      "buckets may help",
+                      s.seed));
   }
   const bool impulse = scenario.engine == EngineKind::impulse;
   if (overlap > kOverlapWarning && impulse)

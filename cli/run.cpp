@@ -186,6 +186,9 @@ int run_run(const RunOptions& options) {
                               (interrupted || std::any_of(runs.begin(), runs.end(), [](const SeedRun& run) {
                                  return run.worth_resuming;
                                }));
+  const bool keep_checkpoints =
+      worth_resuming ||
+      std::any_of(runs.begin(), runs.end(), [](const SeedRun& run) { return run.does_not_fit; });
   const auto say_how_to_resume = [&] {
     if (worth_resuming) fmt::print(stderr, "to go on: scree run --resume {}\n", out.string());
   };
@@ -216,7 +219,7 @@ int run_run(const RunOptions& options) {
   if (results.empty()) {
     fmt::print(stderr, "no seed came to a result; what was written is in {}\n", out.string());
     say_how_to_resume();
-    if (!worth_resuming) forget_checkpoints(plan);
+    if (!keep_checkpoints) forget_checkpoints(plan);
     return interrupted ? kInterrupted : std::max<int>(code, kFailed);
   }
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -240,6 +243,6 @@ int run_run(const RunOptions& options) {
   fmt::print("\n{}: {}\n", plan.summary_only ? "summary" : "report",
              (out / (plan.summary_only ? "summary.json" : "report.html")).string());
   say_how_to_resume();
-  if (!worth_resuming) forget_checkpoints(plan);
+  if (!keep_checkpoints) forget_checkpoints(plan);
   return interrupted ? kInterrupted : code;
 }

@@ -160,7 +160,6 @@ void run_seed(const scree::Scenario& scenario, SeedRun& run, const SeedSettings&
   } catch (const scree::StateError& error) {
     run.failure = error.what();
     run.does_not_fit = true;
-    run.worth_resuming = true;  // by whoever made it: the checkpoint stays
   } catch (const std::invalid_argument& error) {
     run.failure = error.what();
   } catch (const std::bad_alloc&) {

@@ -16,7 +16,7 @@ struct SeedRun {
   std::unique_ptr<scree::SeedResult> result;
   std::vector<std::string> notes;
   std::string failure;
-  bool does_not_fit = false;  ///< the failure is one of the checkpoint: it is of another run
+  bool does_not_fit = false;  ///< the failure is one of the checkpoint, of another run: it stays
   bool blew_up = false;       ///< the failure is one of the watch (sim/scene/watch.h)
   /// It failed for want of memory, disk or permission: resumed later it may come to its end.
   bool worth_resuming = false;

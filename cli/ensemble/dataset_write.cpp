@@ -54,7 +54,7 @@ std::vector<std::string> write_dataset(const DatasetDraft& draft, const fs::path
       ++rows;
     }
   if (rows == 0)
-    throw std::runtime_error(
+    throw std::invalid_argument(
         "no observable scatters between the repeats: there is nothing to write a dataset of");
   const fs::path from = fs::absolute(folder).lexically_normal();
   std::string yaml =

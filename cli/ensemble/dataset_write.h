@@ -32,8 +32,8 @@ struct DatasetDraft {
 
 /// Writes dataset.yaml, observables.csv and, if there is one, covariance.csv into a folder that is there.
 /// Observables without a scatter between repeats have no uncertainty: they are left out unless
-/// `relative_uncertainty` is given, and returned, as experiment/observable. Throws std::runtime_error if
-/// nothing is left or a file cannot be written.
+/// `relative_uncertainty` is given, and returned, as experiment/observable. Throws
+/// std::invalid_argument if nothing is left, std::runtime_error if a file cannot be written.
 std::vector<std::string> write_dataset(const DatasetDraft& draft, const std::filesystem::path& folder);
 
 }  // namespace scree

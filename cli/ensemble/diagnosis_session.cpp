@@ -193,6 +193,7 @@ DiagnosisSession::DiagnosisSession(const DiagnosisModel& model, JoinedData data,
       space_(space_of(model, data_.experiments, without)) {
   design_ = in_every_experiment(design_of(space_, model.simulations));
   learnt_.resize(data_.experiments.size());
+  failure_.resize(data_.experiments.size());
   everything_.resize(data_.experiments.size());
 }
 
@@ -228,6 +229,8 @@ void DiagnosisSession::learn_from(const std::vector<ExperimentRuns>& runs, const
     for (const MeasuredValue& value : data_.measured.values)
       if (value.experiment == e) outputs.push_back(value.output);
     GatheredRuns gathered = gather(runs[e], here, outputs);
+    for (const auto& each : here)
+      if (each && each->state == RunState::failed) failure_[e] = each->message;
     if (gathered.left_out > 0)
       outcome.notes.push_back(fmt::format(
           "{}: {} of {} simulations failed, did not come to rest or lack a measured number; left out",
@@ -271,8 +274,10 @@ SimulatedModel DiagnosisSession::simulate(const ModelPoint& point, const RunThro
     simulated.runs = std::min(simulated.runs, static_cast<int>(count));
     const Eigen::Index width = static_cast<Eigen::Index>(data_.measured.of(e).size());
     if (count < 2)
-      throw std::runtime_error(fmt::format(
-          "{}: simulations of the fitted model do not give the numbers measured", data_.experiments[e].name));
+      throw std::runtime_error(
+          fmt::format("{}: {} of {} simulations of the fitted model give the numbers measured{}",
+                      data_.experiments[e].name, count, model_.simulations.check,
+                      failure_[e].empty() ? "" : "; the last that failed: " + failure_[e]));
     Eigen::MatrixXd y(count, width);
     for (Eigen::Index k = 0; k < count; ++k)
       y.row(k) = learnt_[e][before[e] + static_cast<std::size_t>(k)].outputs.transpose();

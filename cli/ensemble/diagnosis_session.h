@@ -90,6 +90,7 @@ class DiagnosisSession {
   DesignRuns learnt_;
   // All outputs of the simulations, for what was not measured; by experiment.
   std::vector<std::vector<std::pair<ModelPoint, std::map<std::string, double>>>> everything_;
+  std::vector<std::string> failure_;  // the last of each experiment, why; empty without one
   std::uint64_t checks_ = 0;  // seeds used for them
 };
 

@@ -65,6 +65,11 @@ TEST_F(Field, ReportTablesAndDataset) {
       call("validate " + source + "/scenarios/quick_dump.yaml --set grading=" + out + "/corrected_whole.csv");
   EXPECT_THAT(scenario.text, HasSubstr("million spheres (1 dumps of 60 t of corrected_whole)"));
   EXPECT_EQ(call("field " + table() + " --out " + out).code, 2);  // it is there already
+  // A refused one leaves the good one alone.
+  const Called refused = call("field " + table() + " --scenario " + source +
+                              "/scenarios/quick_dump.yaml --observables bogus --force --out " + out);
+  EXPECT_EQ(refused.code, 2) << refused.text;
+  EXPECT_EQ(call("validate " + out + "/dataset/dataset.yaml").code, 0);
 }
 
 TEST_F(Field, RefusesWithOneLine) {
@@ -79,13 +84,21 @@ TEST_F(Field, RefusesWithOneLine) {
            {"field " + good + " --void-ratio 0" + out, "--void-ratio"},
            {"field " + good + " --observables chi" + out, "--scenario"},
            {"field " + good + " --scenario " + source + "/scenarios/repose_lab.yaml" + out, "repose_lift"},
+           {"field " + good + " --scenario " + write("broken.yaml", "grading: 3\n") + out, "broken.yaml"},
+           {"field " +
+                write("same.csv",
+                      "image,section,d10_m,d50_m,d90_m\n"
+                      "1,whole,1,2,3\n1,S1,1,2,3\n2,whole,1,2,3\n2,S1,1,2,3\n") +
+                " --scenario " + source + "/scenarios/quick_dump.yaml" + out,
+            "scatter"},
            {"field " + write("whole.csv", "image,section,d10_m,d50_m,d90_m\n1,1,1,2,3\n") + out,
             "--original"}}) {
     const Called called = call(arguments);
     EXPECT_EQ(called.code, 2) << arguments << "\n" << called.text;
     EXPECT_THAT(called.text, HasSubstr(words)) << arguments;
   }
-  EXPECT_FALSE(fs::exists(folder / "none"));
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    EXPECT_TRUE(entry.path().extension() == ".csv" || entry.path().extension() == ".yaml") << entry.path();
 }
 
 }  // namespace

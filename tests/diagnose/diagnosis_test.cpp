@@ -24,6 +24,19 @@ class DiagnosisOf : public testing::Test {
   }
 };
 
+// chi2 = d^T (C + S)^-1 d: S is what the surrogate does not know of the fitted model.
+TEST_F(DiagnosisOf, GapsAddWhatTheSurrogateDoesNotKnow) {
+  const Diagnosis d = of(SyntheticWorld::point(0.5, -0.6), 1);
+  const SurfacePrediction fitted = model.at(d.calibration.best);
+  const Eigen::VectorXd difference = d.measured.vector() - fitted.mean;
+  const auto chi2 = [&](const Eigen::MatrixXd& covariance) {
+    return difference.dot(covariance.ldlt().solve(difference));
+  };
+  const double with = chi2(d.covariance + fitted.covariance), without = chi2(d.covariance);
+  EXPECT_NEAR(d.calibration.gap.chi2, with, 1e-6 * with);
+  EXPECT_GT(without, 1.01 * with) << "the surrogate is too good for this test";
+}
+
 TEST_F(DiagnosisOf, NominalDataSaysThatNothingIsMissing) {
   int alarms = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {

@@ -118,6 +118,37 @@ TEST(Sleep, SleepersWakeWhenANeighbourLeavesTheModel) {
   for (const Grain& g : world.snapshot().grains) EXPECT_LT(g.position.z(), 1.5 * kRadius) << g.id;
 }
 
+// It is taken out while it still touches the one that sleeps on it: its last step, over the border of the
+// domain, is too short to be felt there.
+TEST(Sleep, SleeperOnWhatIsTakenOutWakes) {
+  WorldSettings settings;
+  settings.sleep = true;
+  RrlinearWorld at_rest(settings);
+  const auto build = [](RrlinearWorld& world) {
+    world.add_mesh(make_box({-20, -20, -2}, {20, 20, 0}), {0.4, 0.4}, Motion::fixed(Pose{}));
+    world.add_spheres({ball({0, 0, kRadius}), ball({0, 0, 3 * kRadius})});
+    world.advance_to(10);
+  };
+  build(at_rest);
+  settings.domain_low = {at_rest.snapshot().grains[0].position.x() - 1e-9, -5, -5};
+  RrlinearWorld world(settings);
+  build(world);
+  ASSERT_EQ(world.statistics().asleep, 2);
+  world.set_velocity(0, {-5e-3, 0, 0}, Vec3::Zero());
+  for (int k = 1; k <= 200; ++k) world.advance_to(10 + 0.01 * k);  // looked at while it is over the border
+  EXPECT_EQ(world.statistics().lost_particles, 1);
+  EXPECT_LT(world.snapshot().grains[1].position.z(), 1.5 * kRadius);
+}
+
+// A tool goes by a millimetre from it, for longer than a ball needs to fall asleep.
+TEST(Sleep, BallBesideAToolThatMovesStaysAwake) {
+  Bench b({ball({0, 0, kRadius}), ball({0, 5, kRadius})});
+  b.world.add_mesh(make_box({kRadius + 0.001, -4, 0.01}, {kRadius + 1, 4, 1}), {0.4, 0.4},
+                   Motion({{0.0, Pose{}}, {20.0, Pose{{0, 0.5, 0}, Quaternion::Identity()}}}));
+  b.world.advance_to(10);
+  EXPECT_EQ(b.world.statistics().asleep, 1) << "the one far from the tool";
+}
+
 std::vector<NewSphere> heap() {
   std::vector<NewSphere> spheres;
   for (int k = 0; k < 60; ++k)

@@ -171,11 +171,15 @@ INSTANTIATE_TEST_SUITE_P(
                     Additions{0.2, 0.5, {1e4, 0.2, 0.3, 1, 0.2, 0.3, 0.7, 1.5, 0.8}}));
 
 // A contact that opens and closes again, listed all the while, begins anew: its shear is ks times the slip of
-// one step.
-TEST(StepKernels, ContactThatOpensForgetsItsShear) {
+// one step. With cohesion a contact still bears shear at the moment when it opens.
+class StepKernelsWithCohesion : public testing::TestWithParam<double> {};
+
+TEST_P(StepKernelsWithCohesion, ContactThatOpensForgetsItsShear) {
   Material material;
   material.mu = 1;
-  Scene scene(2, 0, material);
+  ContactEffects effects;
+  effects.surface_energy = GetParam();  // J/m2
+  Scene scene(2, 0, material, effects);
   Spheres& s = scene.spheres;
   const double speed = 0.01, dt = 0.01;
   s.place[0] = {0, 0, 0, 1}, s.place[1] = {1.9, 0, 0, 1};
@@ -194,6 +198,7 @@ TEST(StepKernels, ContactThatOpensForgetsItsShear) {
   scene.forces(dt, false);
   EXPECT_NEAR(scene.sums[0].force.y, one_step, 1e-6 * one_step);
 }
+INSTANTIATE_TEST_SUITE_P(Bonds, StepKernelsWithCohesion, testing::Values(0.0, 1e4));
 
 // A block that touches hundreds of small spheres: its row, and the pairs that close in one step, are longer
 // than what is taken at a time. Their springs push it up with sum kn u.
