@@ -124,7 +124,7 @@ SceneNumbers numbers_of(const std::vector<Outputs>& runs, double least_share) {
     for (const auto& [name, value] : runs[k])
       if (!std::regex_match(name, left_out))
         numbers.try_emplace(name, runs.size(), nan).first->second[k] = rounded(value);
-  std::erase_if(numbers, [](const auto& number) {
+  std::erase_if(numbers, [&](const auto& number) {
     const auto there = std::count_if(number.second.begin(), number.second.end(),
                                      [](double value) { return !std::isnan(value); });
     return static_cast<double>(there) < least_share * static_cast<double>(number.second.size());
