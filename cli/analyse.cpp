@@ -118,10 +118,10 @@ int write_dataset_of(const AnalyseOptions& options, const scree::Scenario& scena
       experiment.observables[name] = value;
   }
   draft.experiments.push_back(std::move(experiment));
-  WrittenDataset dataset(options.out, options.out);
-  const int code = dataset.write(
-      [&](const fs::path& folder) { return note_of_left_out(scree::write_dataset(draft, folder)); });
-  if (code != kOk || !prepare_folder(options.out, options.force)) return kBadInput;
+  const WrittenDataset dataset(options.out, [&](const fs::path& folder) {
+    return note_of_left_out(scree::write_dataset(draft, folder));
+  });
+  if (dataset.check() != kOk || !prepare_folder(options.out, options.force)) return kBadInput;
   dataset.put_in_place();
   return kOk;
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 #include <regex>
 
 #include "analysis/field/field_analysis.h"
@@ -83,18 +84,20 @@ std::optional<Inputs> read_inputs(const FieldCliOptions& options) {
   return inputs;
 }
 
-int write_dataset_of(const FieldCliOptions& options, const scree::FieldAnalysis& field, int sections,
-                     WrittenDataset& dataset) {
+// The dataset of the sections; none, with a message, if its scenario cannot be had.
+std::optional<WrittenDataset> dataset_of(const FieldCliOptions& options, const scree::FieldAnalysis& field,
+                                         int sections) {
   scree::ScenarioResult loaded = scree::load_scenario(options.scenario, {}, asset_dir());
   for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
-  if (!loaded.errors.empty()) return kBadInput;
+  if (!loaded.errors.empty()) return std::nullopt;
   scree::FieldDatasetRequest request{
       options.scenario, {}, options.gradings.filename().string(), options.observables};
   // The pile must be cut as the pictures are; that changes how it is looked at, not how it is made.
   if (loaded.scenario.output.sections != sections)
     request.overrides.push_back(fmt::format("output.sections={}", sections));
-  return dataset.write(
-      [&](const fs::path& folder) { return scree::write_field_dataset(field, request, folder); });
+  return WrittenDataset(options.out / "dataset", [&field, request](const fs::path& folder) {
+    return scree::write_field_dataset(field, request, folder);
+  });
 }
 
 }  // namespace
@@ -115,14 +118,14 @@ int run_field(const FieldCliOptions& given) {
   }
   if (options.out.empty()) options.out = free_run_folder(options.gradings.stem().string());
   if (!may_fill(options.out, options.force)) return kBadInput;
-  WrittenDataset dataset(options.out, options.out / "dataset");
-  const bool wanted = !options.scenario.empty();
-  if (wanted)
-    if (const int code = write_dataset_of(options, field, inputs->gradings.sections, dataset); code != kOk)
-      return code;
+  std::optional<WrittenDataset> dataset;
+  if (!options.scenario.empty()) {
+    dataset = dataset_of(options, field, inputs->gradings.sections);
+    if (!dataset || dataset->check() != kOk) return kBadInput;
+  }
   if (!prepare_folder(options.out, options.force)) return kBadInput;
   for (const std::string& line : scree::field_in_words(field, printed)) fmt::print("{}\n", line);
-  if (wanted) dataset.put_in_place();
+  if (dataset) dataset->put_in_place();
   scree::write_field_report(options.gradings.stem().string(), field, printed, options.out);
   fmt::print("report: {}\n", (options.out / "report.html").string());
   return kOk;

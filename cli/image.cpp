@@ -172,11 +172,11 @@ int write_dataset_of(const ImageOptions& options, const scree::Scenario& scenari
         experiment.observables[fmt::format("{}_S{}", name, k)] = mean;
   }
   draft.experiments.push_back(std::move(experiment));
-  WrittenDataset dataset(out, out);
-  const int code = dataset.write(
-      [&](const fs::path& folder) { return note_of_left_out(scree::write_dataset(draft, folder)); });
-  if (code == kOk) dataset.put_in_place();
-  return code;
+  const WrittenDataset dataset(
+      out, [&](const fs::path& folder) { return note_of_left_out(scree::write_dataset(draft, folder)); });
+  if (const int code = dataset.check(); code != kOk) return code;
+  dataset.put_in_place();
+  return kOk;
 }
 
 // What can be said before any picture is looked at.

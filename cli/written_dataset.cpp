@@ -11,52 +11,46 @@
 namespace fs = std::filesystem;
 
 namespace {
-constexpr const char* kFiles[] = {"dataset.yaml", "observables.csv", "covariance.csv"};
-}
 
-WrittenDataset::WrittenDataset(fs::path out, fs::path folder) : folder_(std::move(folder)) {
-  if (!out.has_filename()) out = out.parent_path();
-  // As deep as `out`: paths in the dataset are relative to it.
-  beside_ = fmt::format("{}.{}.part", out.string(), getpid());
-  written_ = (beside_ / folder_.lexically_relative(out)).lexically_normal();
-}
-
-WrittenDataset::~WrittenDataset() {
-  std::error_code ignored;
-  fs::remove_all(beside_, ignored);
-}
-
-int WrittenDataset::write(const std::function<std::vector<std::string>(const fs::path&)>& write) {
-  std::error_code error;
-  if (fs::create_directories(written_, error); error) {
-    fmt::print(stderr, "{}: cannot be written: {}; choose another --out\n", folder_.string(),
-               error.message());
-    return kBadInput;
+struct TemporaryFolder {
+  fs::path path = fs::temp_directory_path() / fmt::format("scree_dataset_{}", getpid());
+  TemporaryFolder() { fs::create_directories(path); }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
   }
+};
+
+}  // namespace
+
+WrittenDataset::WrittenDataset(fs::path folder, Write write)
+    : folder_(std::move(folder)), write_(std::move(write)) {}
+
+int WrittenDataset::check() const {
+  const TemporaryFolder trial;
   try {
-    notes_ = write(written_);
+    write_(trial.path);
   } catch (const std::invalid_argument& refused) {
     fmt::print(stderr, "{}\n", refused.what());
     return kBadInput;
   }
-  const scree::DatasetResult dataset = scree::load_dataset(written_ / "dataset.yaml", asset_dir());
+  const scree::DatasetResult dataset = scree::load_dataset(trial.path / "dataset.yaml", asset_dir());
   for (const scree::ScenarioError& wrong : dataset.errors) {
     std::string text = wrong.text();
-    if (text.starts_with(written_.string())) text.replace(0, written_.string().size(), folder_.string());
+    if (const std::string there = trial.path.string(); text.starts_with(there + "/"))
+      text = (folder_ / text.substr(there.size() + 1)).string();
     fmt::print(stderr, "{}\n", text);
   }
-  observables_ = dataset.dataset.observables.size();
   return dataset.errors.empty() ? kOk : kBadInput;
 }
 
-void WrittenDataset::put_in_place() {
+void WrittenDataset::put_in_place() const {
   fs::create_directories(folder_);
-  for (const char* file : kFiles) {
-    fs::remove(folder_ / file);
-    if (fs::exists(written_ / file)) fs::rename(written_ / file, folder_ / file);
-  }
-  for (const std::string& note : notes_) fmt::print("note: {}\n", note);
-  fmt::print("dataset: {} ({} observables)\n", (folder_ / "dataset.yaml").string(), observables_);
+  const fs::path file = folder_ / "dataset.yaml", covariance = folder_ / "covariance.csv";
+  fs::remove(covariance);  // of an older one; not every dataset has it
+  for (const std::string& note : write_(folder_)) fmt::print("note: {}\n", note);
+  const scree::DatasetResult dataset = scree::load_dataset(file, asset_dir());
+  fmt::print("dataset: {} ({} observables)\n", file.string(), dataset.dataset.observables.size());
 }
 
 std::vector<std::string> note_of_left_out(const std::vector<std::string>& names) {

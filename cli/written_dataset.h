@@ -5,26 +5,24 @@
 #include <string>
 #include <vector>
 
-/// A dataset that is written beside its folder, read again, so that a user gets what diagnose would get, and
-/// moved in only if it is good: a refused one changes nothing. What was not moved goes with this object.
+/// A dataset that is first written where nobody looks, and read again, so that a user gets what diagnose
+/// would get: a refused one changes nothing.
 class WrittenDataset {
  public:
-  /// `folder`: `out` or one in it.
-  WrittenDataset(std::filesystem::path out, std::filesystem::path folder);
-  ~WrittenDataset();
-  WrittenDataset(const WrittenDataset&) = delete;
-  WrittenDataset& operator=(const WrittenDataset&) = delete;
+  /// Writes into a folder that is there; returns notes. Called twice.
+  using Write = std::function<std::vector<std::string>(const std::filesystem::path&)>;
 
-  /// Calls `write` with a folder that is there; it returns notes. What it throws as std::invalid_argument,
-  /// and what is wrong with the dataset, goes to stderr. kOk or kBadInput.
-  int write(const std::function<std::vector<std::string>(const std::filesystem::path&)>& write);
-  /// Moves it to its folder, and says the notes and what the dataset holds.
-  void put_in_place();
+  WrittenDataset(std::filesystem::path folder, Write write);
+
+  /// What `write` throws as std::invalid_argument, and what is wrong with the dataset, goes to stderr. kOk or
+  /// kBadInput.
+  int check() const;
+  /// Writes it, and says the notes and what it holds.
+  void put_in_place() const;
 
  private:
-  std::filesystem::path folder_, beside_, written_;
-  std::vector<std::string> notes_;
-  std::size_t observables_ = 0;
+  std::filesystem::path folder_;
+  Write write_;
 };
 
 /// In words, names of observables that scree::write_dataset left out; none for none.

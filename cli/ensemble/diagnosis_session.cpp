@@ -229,6 +229,7 @@ void DiagnosisSession::learn_from(const std::vector<ExperimentRuns>& runs, const
     for (const MeasuredValue& value : data_.measured.values)
       if (value.experiment == e) outputs.push_back(value.output);
     GatheredRuns gathered = gather(runs[e], here, outputs);
+    failure_[e].clear();
     for (const auto& each : here)
       if (each && each->state == RunState::failed) failure_[e] = each->message;
     if (gathered.left_out > 0)

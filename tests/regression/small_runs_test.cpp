@@ -81,6 +81,7 @@ TEST(SmallRunsTest, MissingValuesRankLowest) {
   for (double& value : made.now["number3"]) value = std::numeric_limits<double>::quiet_NaN();
   EXPECT_LT(shift_of(made.stored, made.now).p, bound());
   made.now.erase("number3");
+  EXPECT_LT(shift_of(made.stored, made.now).p, bound());
   EXPECT_THAT(shift_of(made.stored, made.now).broken, ElementsAre(HasSubstr("number3")));
 }
 

@@ -52,7 +52,7 @@ struct SceneShift {
   /// much. Twice the smaller of the two. The draws take account of how numbers hang together.
   double p = 1;
   /// A line for each number that is equal in all stored runs and differs from that in all of these, and for
-  /// each that none of these has.
+  /// each that all stored runs have and none of these.
   std::vector<std::string> broken;
 };
 SceneShift shift_of(const SceneNumbers& stored, const SceneNumbers& now);
