@@ -6,36 +6,16 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
 
 #include "analysis/pictures.h"
+#include "sim/io/scratch_folder.h"
 #include "sim/io/text_file.h"
 
 namespace scree {
 namespace {
-
-/// A folder that goes away with its owner.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "scree-picture-XXXXXX").string();
-    if (!mkdtemp(name.data())) fail_to_write(name, std::strerror(errno));
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  std::filesystem::path operator/(const char* name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// Runs gnuplot on a script with its messages in `log`; the exit status, or -1 with errno when it cannot
 /// start.
@@ -85,15 +65,15 @@ void run_gnuplot(const std::string& script, const std::filesystem::path& output)
   const ScratchFolder scratch;
   std::error_code ignored;
   std::filesystem::remove(output, ignored);
-  write_text_file(scratch / "picture.gp",
+  write_text_file(scratch.path() / "picture.gp",
                   fmt::format("set encoding utf8\nset output {}\n{}\nunset output\n",
                               gnuplot_quoted(std::filesystem::absolute(output).string()), script));
-  const int status = spawn_gnuplot(scratch / "picture.gp", scratch / "messages.txt");
+  const int status = spawn_gnuplot(scratch.path() / "picture.gp", scratch.path() / "messages.txt");
   if (status == -1 || status == 127)
     throw std::runtime_error(
         "cannot draw pictures: gnuplot does not start; install it (Debian: apt install gnuplot-nox)");
   if (status == 0 && std::filesystem::exists(output) && std::filesystem::file_size(output) > 0) return;
-  std::ifstream in(scratch / "messages.txt");
+  std::ifstream in(scratch.path() / "messages.txt");
   std::string words{std::istreambuf_iterator<char>(in), {}};
   for (char& c : words)
     if (c == '\n') c = ' ';

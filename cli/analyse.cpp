@@ -118,7 +118,7 @@ int write_dataset_of(const AnalyseOptions& options, const scree::Scenario& scena
       experiment.observables[name] = value;
   }
   draft.experiments.push_back(std::move(experiment));
-  const WrittenDataset dataset(options.out, [&](const fs::path& folder) {
+  WrittenDataset dataset(options.out, [&](const fs::path& folder) {
     return note_of_left_out(scree::write_dataset(draft, folder));
   });
   if (dataset.check() != kOk || !prepare_folder(options.out, options.force)) return kBadInput;

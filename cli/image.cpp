@@ -172,7 +172,7 @@ int write_dataset_of(const ImageOptions& options, const scree::Scenario& scenari
         experiment.observables[fmt::format("{}_S{}", name, k)] = mean;
   }
   draft.experiments.push_back(std::move(experiment));
-  const WrittenDataset dataset(
+  WrittenDataset dataset(
       out, [&](const fs::path& folder) { return note_of_left_out(scree::write_dataset(draft, folder)); });
   if (const int code = dataset.check(); code != kOk) return code;
   dataset.put_in_place();

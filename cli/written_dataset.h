@@ -16,13 +16,14 @@ class WrittenDataset {
 
   /// What `write` throws as std::invalid_argument, and what is wrong with the dataset, goes to stderr. kOk or
   /// kBadInput.
-  int check() const;
-  /// Writes it, and says the notes and what it holds.
+  int check();
+  /// After a check that was kOk: writes it, and says the notes and what it holds.
   void put_in_place() const;
 
  private:
   std::filesystem::path folder_;
   Write write_;
+  std::size_t observables_ = 0;  // as checked
 };
 
 /// In words, names of observables that scree::write_dataset left out; none for none.

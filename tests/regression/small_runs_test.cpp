@@ -10,6 +10,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "sim/material/random.h"
+
 namespace scree {
 namespace {
 
@@ -22,11 +24,6 @@ constexpr double kByChance = 0.01;  // probability that the test fails where onl
 // Half of it is for the scenes, each with its share, half for all together.
 double bound() {
   return kByChance / 2 / static_cast<double>(scene_names().size());
-}
-
-SceneShift tested(const std::string& scene, const std::vector<std::string>& overrides = {}) {
-  return shift_of(read_numbers(stored_numbers_file()).at(scene),
-                  numbers_of(run_scene(scene, kStoredSeeds + 1, kTestedSeeds, overrides)));
 }
 
 std::string in_words(const SceneShift& shift) {
@@ -43,15 +40,11 @@ std::string in_words(const SceneShift& shift) {
 struct Made {
   SceneNumbers stored, now;
   explicit Made(std::uint64_t seed) {
-    std::uint64_t state = seed;
-    const auto uniform = [&] {
-      state = state * 6364136223846793005u + 1442695040888963407u;
-      return static_cast<double>(state >> 11) * 0x1.0p-53;
-    };
+    Random draw(seed, 0, RandomPurpose::measurement);
     for (int number = 0; number < 10; ++number) {
       const std::string name = "number" + std::to_string(number);
-      for (int k = 0; k < kStoredSeeds; ++k) stored[name].push_back(uniform());
-      for (int k = 0; k < kTestedSeeds; ++k) now[name].push_back(uniform());
+      for (int k = 0; k < kStoredSeeds; ++k) stored[name].push_back(draw.uniform());
+      for (int k = 0; k < kTestedSeeds; ++k) now[name].push_back(draw.uniform());
     }
   }
 };
@@ -102,9 +95,10 @@ TEST(SmallRunsTest, SmallProbabilitiesAddUp) {
 }
 
 TEST(SmallRuns, AreWhatTheyWere) {
+  const auto stored = read_numbers(stored_numbers_file());
   std::vector<double> p;
   for (const std::string& scene : scene_names()) {
-    const SceneShift shift = tested(scene);
+    const SceneShift shift = shift_of_tested(stored, scene);
     EXPECT_THAT(shift.broken, IsEmpty()) << scene;
     EXPECT_GT(shift.p, bound()) << scene << "\n" << in_words(shift);
     p.push_back(shift.p);
@@ -126,11 +120,15 @@ TEST(SmallRuns, EverySceneIsStoredWithItsMainNumbers) {
 
 // That the bound is not too wide to notice anything.
 TEST(SmallRuns, NoticeLocalDampingAQuarterLower) {
-  EXPECT_LT(tested("end_dump", {"material.local_damping=0.3"}).p, bound());
+  EXPECT_LT(
+      shift_of_tested(read_numbers(stored_numbers_file()), "end_dump", {"material.local_damping=0.3"}).p,
+      bound());
 }
 
 TEST(SmallRuns, NoticeAnotherRebound) {
-  EXPECT_THAT(tested("drop", {"material.local_damping=0.401"}).broken, testing::Not(IsEmpty()));
+  EXPECT_THAT(
+      shift_of_tested(read_numbers(stored_numbers_file()), "drop", {"material.local_damping=0.401"}).broken,
+      testing::Not(IsEmpty()));
 }
 
 }  // namespace

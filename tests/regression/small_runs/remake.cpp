@@ -76,9 +76,7 @@ int try_change(const std::vector<std::string>& scenes, const std::vector<std::st
   const Table table = read_numbers(stored_numbers_file());
   std::vector<double> all;
   for (const std::string& scene : scenes) {
-    if (!table.contains(scene)) throw std::runtime_error(scene + " is not stored");
-    const SceneShift shift =
-        shift_of(table.at(scene), numbers_of(run_scene(scene, kStoredSeeds + 1, kTestedSeeds, overrides)));
+    const SceneShift shift = shift_of_tested(table, scene, overrides);
     all.push_back(shift.p);
     fmt::print("{:<20} p {:.4f}  {}{}\n", scene, shift.p,
                shift.numbers.empty() ? "" : shift.numbers.front().name + " moved most",

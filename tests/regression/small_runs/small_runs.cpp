@@ -5,21 +5,19 @@
 #include <algorithm>
 #include <array>
 #include <boost/math/distributions/chi_squared.hpp>
-#include <charconv>
 #include <cmath>
 #include <exception>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <regex>
-#include <sstream>
 #include <stdexcept>
 #include <thread>
 
 #include "cli/results_of.h"
 #include "scree_version.h"
 #include "sim/io/text_file.h"
+#include "sim/material/csv_table.h"
 #include "sim/material/random.h"
 
 namespace scree {
@@ -45,17 +43,9 @@ Outputs run_once(const Scenario& scenario, std::uint64_t seed) {
   return outputs_of(result);
 }
 
-double number(const std::string& text) {
-  double value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size())
-    throw std::invalid_argument("not a number: " + text);
-  return value;
-}
-
 // As the table holds it.
 double rounded(double value) {
-  return std::abs(value) < kNothing ? 0 : number(fmt::format("{:.{}g}", value, kDigits));
+  return std::abs(value) < kNothing ? 0 : std::stod(fmt::format("{:.{}g}", value, kDigits));
 }
 
 // Ranks, equal values sharing theirs, less their mean, over their deviation; none if all are equal.
@@ -137,28 +127,14 @@ fs::path stored_numbers_file() {
 }
 
 std::map<std::string, SceneNumbers> read_numbers(const fs::path& file) {
-  std::ifstream stream(file);
-  std::string line;
-  if (!std::getline(stream, line) || !line.starts_with("scene,output,1,"))
-    throw std::runtime_error(
-        fmt::format("{}:1: the first line does not begin with scene,output,1", file.string()));
+  std::vector<std::string> columns{"scene", "output"};
+  for (int seed = 1; seed <= kStoredSeeds; ++seed) columns.push_back(std::to_string(seed));
   std::map<std::string, SceneNumbers> scenes;
-  for (int row = 2; std::getline(stream, line); ++row) {
-    if (line.ends_with(',')) line += ' ';  // its last field is empty
-    std::istringstream fields(line);
-    std::string scene, output, field;
-    std::getline(fields, scene, ',');
-    std::getline(fields, output, ',');
-    std::vector<double>& values = scenes[scene][output];
-    try {
-      while (std::getline(fields, field, ','))
-        values.push_back(field.empty() || field == " " ? nan : number(field));
-    } catch (const std::invalid_argument& error) {
-      throw std::runtime_error(fmt::format("{}:{}: {}", file.string(), row, error.what()));
-    }
-    if (values.size() != kStoredSeeds)
-      throw std::runtime_error(
-          fmt::format("{}:{}: {} values instead of {}", file.string(), row, values.size(), kStoredSeeds));
+  for (CsvTable table(file, columns); table.next();) {
+    std::vector<double>& values = scenes[table.text("scene")][table.text("output")];
+    if (!values.empty()) table.fail("this number is there already");
+    for (int seed = 1; seed <= kStoredSeeds; ++seed)
+      values.push_back(table.optional_number(std::to_string(seed)).value_or(nan));
   }
   return scenes;
 }
@@ -238,6 +214,13 @@ SceneShift shift_of(const SceneNumbers& stored, const SceneNumbers& now) {
   }
   shift.p = std::min(1.0, 2.0 * std::min(squares, largest) / (1 + kDraws));
   return shift;
+}
+
+SceneShift shift_of_tested(const std::map<std::string, SceneNumbers>& stored, const std::string& scene,
+                           const std::vector<std::string>& overrides) {
+  const auto found = stored.find(scene);
+  if (found == stored.end()) throw std::invalid_argument(scene + " is not stored");
+  return shift_of(found->second, numbers_of(run_scene(scene, kStoredSeeds + 1, kTestedSeeds, overrides)));
 }
 
 double together(const std::vector<double>& p) {

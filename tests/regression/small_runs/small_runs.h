@@ -33,7 +33,7 @@ using SceneNumbers = std::map<std::string, std::vector<double>>;
 SceneNumbers numbers_of(const std::vector<Outputs>& runs, double least_share = 0);
 
 /// small_runs.csv: scene,output, and a column a seed; empty where a run has no such number. Reading throws
-/// std::runtime_error `file:line: what is wrong`.
+/// FileError.
 std::filesystem::path stored_numbers_file();
 std::map<std::string, SceneNumbers> read_numbers(const std::filesystem::path& file);
 void write_numbers(const std::map<std::string, SceneNumbers>& scenes, const std::filesystem::path& file);
@@ -56,6 +56,11 @@ struct SceneShift {
   std::vector<std::string> broken;
 };
 SceneShift shift_of(const SceneNumbers& stored, const SceneNumbers& now);
+
+/// The same of the tested seeds of a scene, simulated now. Throws as run_scene, and std::invalid_argument for
+/// a scene that is not stored.
+SceneShift shift_of_tested(const std::map<std::string, SceneNumbers>& stored, const std::string& scene,
+                           const std::vector<std::string>& overrides = {});
 
 /// Probability of scenes together: Fisher's sum of -2 ln p over them, chi-square of twice as many degrees of
 /// freedom. Small changes that no scene shows alone add up.
