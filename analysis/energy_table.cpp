@@ -39,7 +39,7 @@ std::string energy_table(const RunResult& result) {
                               : put_in >= 100 ? std::pair("kJ", 1e3)
                                               : std::pair("J", 1.0);
   std::string rows;
-  const auto row = [&](const char* side, const std::string& words, double sum) {
+  const auto row = [&, joules = joules](const char* side, const std::string& words, double sum) {
     rows += fmt::format(
         "<tr><td class=\"word\">{}</td><td class=\"word\">{}</td><td>{}</td><td>{}</td></tr>\n", side, words,
         number_text(sum / n / joules), put_in > 0 ? decimals_text(100 * sum / n / put_in, 2) : "–");

@@ -9,8 +9,9 @@
 //   rolling  Mr <- rotated Mr + kr (rotation of 2 against 1 in the contact plane), |Mr| <= mu_r Rbar Fn
 // and, with effects (contact_effects.h) alone,
 //   twisting Mt <- Mt + kr (rotation of 2 against 1 about the normal), |Mt| <= mu_t Rbar Fn
-//   pull     2 pi gamma Rbar against Fn; limits stay those of the spring's Fn, as they must for a contact
-//            that sticks to be as hard to shear as one that is pressed together
+//   pull     2 pi gamma Rbar against Fn, for the time that the contact is closed (share_closed); limits stay
+//            those of the spring's Fn, as they must for a contact that sticks to be as hard to shear as one
+//            that is pressed together
 //   kn = pi r^2 E / L, ks = kn / k*, kr = ks Rbar^2
 //   ball-ball:  r = min(R1, R2), L = R1 + R2, 1/Rbar = 1/R1 + 1/R2
 //   ball-facet: r = R1,          L = R1,      Rbar = R1
@@ -177,6 +178,21 @@ SCREE_INLINE Real twisted_on(Real moment, Real added, Real limit, Real& lost) {
   return kept;
 }
 
+/// Part of a step for which the force of a place pulls. Pull is there at once when a contact closes and gone
+/// when it opens, unlike a spring's force, and both come somewhere on the way that led to this place. Of the
+/// way, over which the overlap was positive for a part, the force of the place before had its half if it was
+/// closed; this one has the rest, and if it is closed half of the way that leads on. So closing and opening
+/// make no energy to the first order of dt. `opening`: m/s.
+template <class Real>
+SCREE_INLINE Real share_closed(Real overlap, Real opening, double dt) {
+  const Real none{}, one = none + 1.0, half = none + 0.5;
+  const Real before = overlap + opening * dt, moved = overlap - before;
+  const Real closed = pick(overlap > none, one, none),
+             of_way =
+                 pick(moved * moved > none, (larger(overlap, none) - larger(before, none)) / moved, closed);
+  return of_way - pick(before > none, half, none) + 0.5 * closed;
+}
+
 /// Work (J) of dashpots that take `power` now and took `before` in the step before.
 template <class Real>
 SCREE_INLINE Real dashpot_work(Real power, Real before, double dt) {
@@ -218,7 +234,8 @@ inline ContactForce contact_step(const ContactLaw& law, const ContactStiffness& 
     f.loss.twisting /= k.kr;
     f.rolling += history.twisting * n;
   }
-  f.force = shear - n * (fn - law.pull * k.rbar);
+  const double pull = law.pull == 0 ? 0.0 : law.pull * k.rbar * share_closed(c.overlap, opening, c.dt);
+  f.force = shear - n * (fn - pull);
   return f;
 }
 
@@ -270,7 +287,7 @@ SCREE_INLINE BasicContactForce<Lanes> contact_step(const ContactLaw& law, const 
   auto mu = friction.mu;
   if constexpr (Friction::kEffects)
     mu = weakened(law, mu, wide(first_half(root(slip_and_bend.squaredNorm()))));
-  // A contact that opens, whose force is not used, slips by all that it holds.
+  // A contact that opens slips by all that it holds; of its force at most a pull is used.
   const Lanes pressed = larger(fn, Lanes{});
   const TwinFloats stiffness = twin(narrow(k.ks * c.dt), narrow(k.kr * c.dt)),
                    limit = twin(narrow(mu * pressed), narrow(friction.mu_r * k.rbar * pressed));
@@ -304,7 +321,8 @@ SCREE_INLINE BasicContactForce<Lanes> contact_step(const ContactLaw& law, const 
     const LaneFloats rounded = narrow(twisting);
     history.further = twin(rounded, second_half(history.further));
     f.rolling = f.rolling + c.normal * wide(rounded);
-    f.force = shear - c.normal * (fn - law.pull * k.rbar);
+    const Lanes pull = law.pull * k.rbar * share_closed(c.overlap, wide(first_half(along)), c.dt);
+    f.force = shear - c.normal * (pressed - pull);
   }
   return f;
 }

@@ -272,6 +272,15 @@ void RrlinearWorld::mesh_forces(BlockWork& work, double dt) {
       work.losses.add({f.loss.sliding, f.loss.rolling, f.loss.twisting, f.loss.dashpots, 0});
       return f;
     };
+    const auto add = [&](const MeshContact& c, const ContactForce& f) {
+      sum_[i].force.add(f.force);
+      sum_[i].torque.add(arm * motion.normal.cross(f.force) + f.rolling);
+      if (const MeshBody& body = *meshes_[c.body]; body.motion().moves()) {
+        const double power = f.force.dot(body.state().velocity_at(point)) + f.rolling.dot(body.state().spin);
+        work.supplied += std::max(0.0, last_dt_ * power);
+        work.tools += 0.5 * (last_dt_ + dt) * power;
+      }
+    };
     // Where motion alone does not explain an overlap, at a corner or the rim of a face, a contact begins,
     // shifts or ends while pressed, and brings or takes energy (EnergyAccount::pressed). One that is there at
     // one end of the step only has half of its force on the way to the overlap that it would have at the
@@ -291,22 +300,22 @@ void RrlinearWorld::mesh_forces(BlockWork& work, double dt) {
       MeshContact ended = before;
       ended.overlap = 0;
       step_of(ended);
-      if (const double still = before.overlap - opened(); still > 0)
+      const double still = before.overlap - opened();
+      if (still > 0)
         work.pressed -= jump(before.overlap, still);
+      else if (law.pull > 0)
+        add(ended,
+            {.force = motion.normal * (law.pull * stiffness.rbar *
+                                       share_closed(still, motion.velocity.dot(motion.normal), motion.dt)),
+             .rolling = Vec3::Zero(),
+             .loss = {}});
     }
     int count = 0;
     for (MeshContact& c : contacts) {
       if (c.body < 0) break;
-      const ContactForce f = step_of(c);
-      sum_[i].force.add(f.force);
+      add(c, step_of(c));
       sum_[i].force.w += 1;
-      sum_[i].torque.add(arm * motion.normal.cross(f.force) + f.rolling);
       work.overlap_ratio = std::max(work.overlap_ratio, c.overlap / place.w);
-      if (const MeshBody& body = *meshes_[c.body]; body.motion().moves()) {
-        const double power = f.force.dot(body.state().velocity_at(point)) + f.rolling.dot(body.state().spin);
-        work.supplied += std::max(0.0, last_dt_ * power);
-        work.tools += 0.5 * (last_dt_ + dt) * power;
-      }
       if (count < went_on) {
         const double had_overlap = overlap_before[static_cast<std::size_t>(count)];
         work.pressed += (0.5 * stiffness.kn * (c.overlap + had_overlap) - law.pull * stiffness.rbar) *

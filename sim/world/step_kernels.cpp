@@ -230,9 +230,11 @@ SCREE_INLINE void compute(const StepView& view, BlockWork& work, const FourConta
 #pragma GCC unroll 1
   for (int k = 0; k < count; ++k) {
     Neighbour& entry = *four.entry[k];
-    if ((opened >> k & 1u) == 0)
+    const bool opens = (opened >> k & 1u) != 0;
+    if (opens) force[k][3] = 0;
+    if (!opens || (kEffects && view.law.pull > 0))
       add_force(view, work, four.first[k], four.second[k], entry, force[k], torque1[k], torque2[k]);
-    else
+    if (opens)
       close_or_open(view, work, entry.sphere == four.first[k] ? four.second[k] : four.first[k], entry);
   }
 }
