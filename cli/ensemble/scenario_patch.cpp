@@ -9,8 +9,9 @@ namespace fs = std::filesystem;
 
 // Maps within maps, in the order in which their keys came.
 struct Node {
+  std::string name;
   std::string value;
-  std::vector<std::pair<std::string, Node>> children;
+  std::vector<Node> children;
 
   void set(const std::string& key, const std::string& text) {
     const auto dot = key.find('.');
@@ -21,14 +22,13 @@ struct Node {
       child.set(key.substr(dot + 1), text);
   }
   Node& at(const std::string& key) {
-    for (auto& [name, child] : children)
-      if (name == key) return child;
-    children.push_back({key, {}});
-    return children.back().second;
+    for (Node& child : children)
+      if (child.name == key) return child;
+    return children.emplace_back(Node{key, {}, {}});
   }
   void write(std::string& text, int depth) const {
-    for (const auto& [name, child] : children) {
-      text += fmt::format("{:{}}{}:{}\n", "", 2 * depth, name,
+    for (const Node& child : children) {
+      text += fmt::format("{:{}}{}:{}\n", "", 2 * depth, child.name,
                           child.children.empty() ? " " + child.value : std::string());
       child.write(text, depth + 1);
     }
