@@ -108,7 +108,8 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
   r.simulated_seconds = outcome.simulated_seconds;
   r.particle_steps = outcome.statistics.particle_steps;
   r.steps = outcome.statistics.steps;
-  r.time_step_min = outcome.statistics.time_step_min;
+  // Steps that end early where a run is looked at are not counted as the shortest; in some all are such.
+  r.time_step_min = std::min(outcome.statistics.time_step_min, outcome.statistics.time_step_max);
   r.time_step_max = outcome.statistics.time_step_max;
   r.largest_overlap_ratio = outcome.statistics.largest_overlap_ratio;
   r.lost_particles = outcome.statistics.lost_particles;

@@ -60,11 +60,11 @@ SCREE_INLINE void disturb(const StepView& view, BlockWork& work, int i, int j, c
   if (view.sleep.disturbs(view.pairs.rest(entry.memory()), sleeper, force)) work.disturbed.push_back(sleeper);
 }
 
-// A contact of row i has closed or opened since the last step.
+// A contact of row i has closed or opened since the last step. One that has opened has slipped by all that it
+// remembered (contact_step).
 void close_or_open(const StepView& view, BlockWork& work, int i, Neighbour& entry) {
   view.pairs.turn(i, entry);
   if (entry.touching()) return;
-  view.pairs.memory(entry) = {};
   disturb(view, work, i, entry.sphere, entry, Vec3::Zero());
 }
 

@@ -218,6 +218,20 @@ TEST(World, LostSphereIsCountedAndMissedByNobody) {
   EXPECT_EQ(with.snapshot().grains.size(), b.grains.size());
 }
 
+// Neighbours are known over some hundredths of a radius only; what comes from forty radii away must be found in
+// time. Elastic and of equal mass, the spheres exchange their velocities.
+TEST(World, WhatComesFromAfarIsMet) {
+  WorldSettings settings;
+  settings.gravity = Vec3::Zero();
+  settings.material.local_damping = 0;
+  RrlinearWorld world(settings);
+  world.add_spheres({ball({0, 0, 0}, 0.1, {2, 0, 0}), ball({4, 0, 0}, 0.1)});
+  world.advance_to(2.5);  // they meet after 1.9 s
+  const std::vector<Grain> grains = world.snapshot().grains;
+  EXPECT_NEAR(grains[0].velocity.x(), 0, 0.02);
+  EXPECT_NEAR(grains[1].velocity.x(), 2, 0.02);
+}
+
 TEST(World, TooFastASphereIsABlowUp) {
   WorldSettings settings;
   settings.fixed_time_step = 1e-4;
