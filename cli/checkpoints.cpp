@@ -44,12 +44,12 @@ std::unique_ptr<scree::CheckpointReader> Checkpoints::open(
   }
   const scree::CheckpointHeader& header = reader->header();
   if (header.program != header_.program)
-    throw std::runtime_error(
+    throw scree::StateError(
         fmt::format("{}: made by {}, this is {}: the numbers may differ. Resume with that program, or start "
                     "anew from scenario.yaml with another --out",
                     file.string(), header.program, header_.program));
   if (header.scenario != header_.scenario || header.seed != header_.seed)
-    throw std::runtime_error(
+    throw scree::StateError(
         fmt::format("{}: made of another scenario or seed. Start anew with another --out", file.string()));
   return reader;
 }

@@ -1,19 +1,16 @@
 // The program as a user meets it: exit codes, messages, files, interruption, and the same numbers with any
 // number of threads.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <thread>
 
 #include "scree_version.h"
+#include "tests/cli/background.h"
 #include "tests/cli/call.h"
 
 namespace fs = std::filesystem;
@@ -187,21 +184,12 @@ TEST_F(Cli, EffectsAreToldInWords) {
 TEST_F(Cli, InterruptKeepsWhatIsDone) {
   const fs::path out = folder / "run";
   const std::string source = std::string(SCREE_SOURCE_DIR) + "/scenarios/quick_dump.yaml";
-  const pid_t child = fork();
-  if (child == 0) {
-    if (!freopen("/dev/null", "w", stdout) || !freopen("/dev/null", "w", stderr)) _exit(98);
-    execl(SCREE_BINARY, "scree", "run", source.c_str(), "--out", out.c_str(), nullptr);
-    _exit(99);
-  }
+  Background run({"run", source, "--out", out.string()}, "/dev/null");
   // Some frames are on disk before the interruption.
-  for (int k = 0; k < 600 && !(fs::exists(out / "seed_10001" / "particles.xyz") &&
-                               fs::file_size(out / "seed_10001" / "particles.xyz") > 200000);
-       ++k)
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  kill(child, SIGINT);
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_EQ(WEXITSTATUS(status), 130);
+  const fs::path frames = out / "seed_10001" / "particles.xyz";
+  run.ended_before([&] { return fs::exists(frames) && fs::file_size(frames) > 200000; });
+  run.send(SIGINT);
+  EXPECT_EQ(run.code(), 130);
   const auto summary = nlohmann::json::parse(slurp(out / "summary.json"));
   EXPECT_TRUE(summary["interrupted"].get<bool>());
   EXPECT_FALSE(summary["at_rest"].get<bool>()) << "an interrupted run does not look finished";

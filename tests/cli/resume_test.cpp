@@ -1,17 +1,14 @@
 // Runs that are killed, interrupted or short of disk and memory, and what is made of them.
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
-#include <csignal>
 #include <nlohmann/json.hpp>
 #include <random>
-#include <thread>
 #include <vector>
 
+#include "tests/cli/background.h"
 #include "tests/cli/call.h"
 
 namespace fs = std::filesystem;
@@ -62,30 +59,13 @@ class ResumeCli : public testing::Test {
     for (const std::string& word : words) text += word + " ";
     return text;
   }
-  // Starts the program in the background; what it says goes to `log`.
-  pid_t start(const std::vector<std::string>& given) const {
-    const pid_t child = fork();
-    if (child != 0) return child;
-    std::string program = SCREE_BINARY;
-    std::vector<std::string> copy = given;
-    std::vector<char*> arguments{program.data()};
-    for (std::string& word : copy) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    const int file = open(in_folder("log").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
-    dup2(file, STDOUT_FILENO), dup2(file, STDERR_FILENO);
-    execv(program.c_str(), arguments.data());
-    _exit(127);
-  }
-  // Sends a signal when there are `count` checkpoints; the exit status.
-  int stop_at(pid_t child, const fs::path& out, std::size_t count, int signal) const {
-    int status = 0;
-    for (int k = 0; k < 30000 && checkpoints_below(out).size() < count; ++k) {
-      if (waitpid(child, &status, WNOHANG) == child) return status;
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    kill(child, signal);
-    waitpid(child, &status, 0);
-    return status;
+  Background start(const std::vector<std::string>& words) const { return {words, folder / "log"}; }
+  // Begins a run in the folder of this name and kills it when there are `count` checkpoints.
+  void kill_at(const std::string& name, std::size_t count) const {
+    Background run = start(words(in_folder(name), 1, kOften));
+    run.ended_before([&] { return checkpoints_below(folder / name).size() >= count; });
+    run.send(SIGKILL);
+    run.code();
   }
   static void flip(const fs::path& file) {
     std::string bytes = slurp(file);
@@ -115,27 +95,22 @@ TEST_F(ResumeCli, KilledAtAnyMomentItEndsWithTheSameResults) {
   ASSERT_EQ(call(joined(words(in_folder("whole"), 3, "0"))).code, 0);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> share(0, 1);
-  int kills = 0, status = 0;
+  int kills = 0, code = 0;
   std::vector<std::string> command = words(in_folder("killed"), 3, kOften);
-  for (bool ended = false; !ended;) {
-    const pid_t child = start(command);
+  while (true) {
+    Background run = start(command);
     // Longer as time goes on: on a busy machine a step takes more than the first ones.
-    const double patience = (0.05 + 0.4 * share(random)) * (1 + 0.1 * kills);
-    const auto begin = std::chrono::steady_clock::now();
-    while (!ended && std::chrono::steady_clock::now() - begin < std::chrono::duration<double>(patience)) {
-      ended = waitpid(child, &status, WNOHANG) == child;
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
+    const bool ended = run.ended_within((0.05 + 0.4 * share(random)) * (1 + 0.1 * kills));
+    run.send(SIGKILL);
+    code = run.code();
     if (ended) break;
-    kill(child, SIGKILL);
-    waitpid(child, &status, 0);
     ASSERT_LT(++kills, 200) << slurp(folder / "log");
     if (fs::exists(folder / "killed" / "resume.json"))
       command = {"run", "--resume", in_folder("killed"), "--threads", kills % 2 == 0 ? "1" : "3"};
     else
       fs::remove_all(folder / "killed");  // killed before it had begun
   }
-  EXPECT_EQ(WEXITSTATUS(status), 0) << slurp(folder / "log");
+  EXPECT_EQ(code, 0) << slurp(folder / "log");
   EXPECT_GE(kills, 2);
   EXPECT_THAT(slurp(folder / "log"), HasSubstr("goes on from t = "));
   expect_same("whole", "killed");
@@ -143,14 +118,11 @@ TEST_F(ResumeCli, KilledAtAnyMomentItEndsWithTheSameResults) {
 
 TEST_F(ResumeCli, InterruptSavesAndSaysHowToGoOn) {
   ASSERT_EQ(call(joined(words(in_folder("whole"), 1, "0"))).code, 0);
-  const pid_t child = start(words(in_folder("run"), 1, "1000"));
-  std::this_thread::sleep_for(std::chrono::milliseconds(150));
-  while (!fs::exists(folder / "run" / "resume.json"))
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  kill(child, SIGTERM);
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_EQ(WEXITSTATUS(status), 130);
+  Background run = start(words(in_folder("run"), 1, "1000"));
+  run.ended_within(0.15);
+  run.ended_before([&] { return fs::exists(folder / "run" / "resume.json"); });
+  run.send(SIGTERM);
+  EXPECT_EQ(run.code(), 130);
   EXPECT_THAT(slurp(folder / "log"), HasSubstr("to go on: scree run --resume " + in_folder("run")));
   ASSERT_EQ(checkpoints_below(folder / "run").size(), 1u);
   const Called resumed = call("run --resume " + in_folder("run"));
@@ -166,7 +138,7 @@ TEST_F(ResumeCli, DamagedCheckpointsArePassedOver) {
   ASSERT_EQ(call(joined(words(in_folder("whole"), 1, "0"))).code, 0);
   for (const std::size_t damaged : {1, 2}) {
     const std::string name = "run" + std::to_string(damaged);
-    stop_at(start(words(in_folder(name), 1, kOften)), folder / name, 2, SIGKILL);
+    kill_at(name, 2);
     std::vector<fs::path> found = checkpoints_below(folder / name);
     ASSERT_GE(found.size(), 2u);
     for (std::size_t k = 0; k < damaged; ++k) flip(found[found.size() - 1 - k]);
@@ -188,7 +160,7 @@ TEST_F(ResumeCli, WhatCannotBeResumedIsRefusedWithExitCodeTwo) {
     return called.text;
   };
   EXPECT_THAT(refusal("missing"), HasSubstr("no run that can be resumed"));
-  stop_at(start(words(in_folder("run"), 1, kOften)), folder / "run", 1, SIGKILL);
+  kill_at("run", 1);
   const std::string record = slurp(folder / "run" / "resume.json"),
                     scenario = slurp(folder / "run" / "scenario.yaml");
 
@@ -208,7 +180,28 @@ TEST_F(ResumeCli, WhatCannotBeResumedIsRefusedWithExitCodeTwo) {
 
   EXPECT_EQ(call("run --resume " + in_folder("run") + " --set material.mu=0.3").code, 2);
   EXPECT_THAT(call("run").text, HasSubstr("needs a scenario file, or --resume"));
-  EXPECT_EQ(call("run --resume " + in_folder("run")).code, 0);
+
+  // A checkpoint of another run, newer than its own.
+  std::vector<std::string> of_another = words(in_folder("another"), 1, "1000");
+  of_another.insert(of_another.end(), {"--set", "material.mu=0.3"});
+  Background another = start(of_another);
+  another.ended_before([&] { return fs::exists(folder / "another" / "resume.json"); });
+  another.ended_within(0.15);
+  another.send(SIGINT);
+  ASSERT_EQ(another.code(), 130);
+  const std::vector<fs::path> own = checkpoints_below(folder / "run");
+  const fs::path strange = own.front().parent_path() / "checkpoint_999999";
+  fs::copy_file(checkpoints_below(folder / "another").back(), strange);
+  const Called refused = call("run --resume " + in_folder("run"));
+  EXPECT_EQ(refused.code, 2) << refused.text;
+  EXPECT_THAT(refused.text, HasSubstr("made of another scenario or seed"));
+  EXPECT_THAT(refused.text, Not(HasSubstr("to go on")));
+  fs::remove(strange);
+
+  EXPECT_EQ(checkpoints_below(folder / "run"), own) << "what was refused is still there";
+  const Called resumed = call("run --resume " + in_folder("run"));
+  EXPECT_EQ(resumed.code, 0);
+  EXPECT_THAT(resumed.text, HasSubstr("goes on from t = "));
 }
 
 TEST_F(ResumeCli, ImpulseBeginsAnewAndSaysSo) {
@@ -216,13 +209,10 @@ TEST_F(ResumeCli, ImpulseBeginsAnewAndSaysSo) {
   for (const char* value : {"engine=impulse", "experiment.mass_kg=1", "numerics.impulse_friction=0.2",
                             "numerics.impulse_rolling=0.2"})
     command.insert(command.end(), {"--set", value});
-  const pid_t child = start(command);
-  while (!fs::exists(folder / "run" / "resume.json"))
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  kill(child, SIGINT);
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_EQ(WEXITSTATUS(status), 130);
+  Background run = start(command);
+  run.ended_before([&] { return fs::exists(folder / "run" / "resume.json"); });
+  run.send(SIGINT);
+  EXPECT_EQ(run.code(), 130);
   EXPECT_TRUE(checkpoints_below(folder / "run").empty());
   const Called resumed = call("run --resume " + in_folder("run"));
   EXPECT_EQ(resumed.code, 0) << resumed.text;

@@ -1,20 +1,17 @@
 // Sweeps, calibrations and predictions as a user meets them: killed at any moment, two at once, wrong files.
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
-#include <csignal>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <regex>
 #include <set>
-#include <thread>
 #include <vector>
 
 #include "scree_version.h"
+#include "tests/cli/background.h"
 #include "tests/cli/call.h"
 
 namespace fs = std::filesystem;
@@ -52,19 +49,8 @@ class SweepCli : public testing::Test {
     return lines;
   }
   // Starts the program in the background.
-  pid_t start(const std::vector<std::string>& words) {
-    const pid_t child = fork();
-    if (child != 0) return child;
-    std::vector<char*> arguments;
-    std::string program = SCREE_BINARY;
-    arguments.push_back(program.data());
-    std::vector<std::string> copy = words;
-    for (std::string& word : copy) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    const int file = open(in_folder("log" + std::to_string(getpid())).c_str(), O_WRONLY | O_CREAT, 0644);
-    dup2(file, STDOUT_FILENO), dup2(file, STDERR_FILENO);
-    execv(program.c_str(), arguments.data());
-    _exit(127);
+  Background start(const std::vector<std::string>& words, const std::string& log = "log") const {
+    return {words, folder / log};
   }
   fs::path folder;
   const std::string head = "scenario: " + std::string(SCREE_SOURCE_DIR) + "/scenarios/repose_lab.yaml\n";
@@ -79,22 +65,17 @@ TEST_F(SweepCli, KilledAtAnyMomentItGoesOnToTheSameStore) {
 
   std::mt19937 random(1);
   std::uniform_real_distribution<double> share(0, 1);
-  int kills = 0, status = 0;
-  for (bool ended = false; !ended;) {
-    const pid_t child = start({"sweep", sweep, "--store", in_folder("killed.sqlite")});
+  int kills = 0, code = 0;
+  while (true) {
+    Background run = start({"sweep", sweep, "--store", in_folder("killed.sqlite")});
     // Longer as time goes on: on a busy machine a run takes more than the first ones.
-    const double patience = (0.02 + 0.4 * share(random)) * (1 + 0.05 * kills);
-    const auto begin = std::chrono::steady_clock::now();
-    while (!ended && std::chrono::steady_clock::now() - begin < std::chrono::duration<double>(patience)) {
-      ended = waitpid(child, &status, WNOHANG) == child;
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
+    const bool ended = run.ended_within((0.02 + 0.4 * share(random)) * (1 + 0.05 * kills));
+    run.send(SIGKILL);
+    code = run.code();
     if (ended) break;
-    kill(child, SIGKILL);
-    waitpid(child, &status, 0);
     ASSERT_LT(++kills, 500) << "it comes no further";
   }
-  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(code, 0);
   EXPECT_GE(kills, 3);
   EXPECT_EQ(rows("killed.sqlite"), whole);
   EXPECT_FALSE(fs::exists(folder / "killed.sqlite.work")) << "nothing is left of what was killed";
@@ -111,26 +92,18 @@ TEST_F(SweepCli, KilledInTheMiddleOfARunItGoesOnFromItsCheckpoint) {
   bool ended = false;
   for (int round = 0; !ended; ++round) {
     ASSERT_LT(round, 100) << "it comes no further";
-    const pid_t child =
-        start({"sweep", sweep, "--checkpoint-minutes", "0.003", "--store", in_folder("killed.sqlite")});
     // Killed as soon as there is a checkpoint that was not there before.
     const fs::path work = folder / "killed.sqlite.work";
     const std::vector<fs::path> before = checkpoints_below(work);
-    const auto further = [&] {
+    Background run =
+        start({"sweep", sweep, "--checkpoint-minutes", "0.003", "--store", in_folder("killed.sqlite")});
+    ended = run.ended_before([&] {
       const std::vector<fs::path> now = checkpoints_below(work);
       return !std::includes(before.begin(), before.end(), now.begin(), now.end());
-    };
-    int status = 0;
-    while (!ended && !further()) {
-      ended = waitpid(child, &status, WNOHANG) == child;
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
-    if (!ended) {
-      kill(child, SIGKILL);
-      waitpid(child, &status, 0);
-    } else {
-      EXPECT_EQ(WEXITSTATUS(status), 0);
-    }
+    });
+    run.send(SIGKILL);
+    const int code = run.code();
+    EXPECT_EQ(code, ended ? 0 : -SIGKILL);
     std::error_code none;
     for (const auto& entry : fs::directory_iterator(work, none)) {
       std::smatch found;
@@ -144,17 +117,15 @@ TEST_F(SweepCli, KilledInTheMiddleOfARunItGoesOnFromItsCheckpoint) {
 }
 
 TEST_F(SweepCli, TwoAtOnceDoEachRunOnce) {
-  std::vector<pid_t> children;
-  for (int k = 0; k < 2; ++k)
-    children.push_back(
-        start({"sweep", in_folder("sweep.yaml"), "--jobs", "1", "--store", in_folder("both.sqlite")}));
+  std::vector<Background> sweeps;
+  for (const char* log : {"first", "second"})
+    sweeps.push_back(
+        start({"sweep", in_folder("sweep.yaml"), "--jobs", "1", "--store", in_folder("both.sqlite")}, log));
+  for (Background& sweep : sweeps) EXPECT_EQ(sweep.code(), 0);
   int done_here = 0;
-  for (const pid_t child : children) {
-    int status = 0;
-    waitpid(child, &status, 0);
-    EXPECT_EQ(WEXITSTATUS(status), 0);
+  for (const char* log : {"first", "second"}) {
     std::smatch found;
-    const std::string text = slurp(folder / ("log" + std::to_string(child)));
+    const std::string text = slurp(folder / log);
     ASSERT_TRUE(std::regex_search(text, found, std::regex("\\(([0-9]+) runs done here\\)"))) << text;
     done_here += std::stoi(found[1]);
   }
@@ -164,13 +135,11 @@ TEST_F(SweepCli, TwoAtOnceDoEachRunOnce) {
 }
 
 TEST_F(SweepCli, InterruptGivesBackAndSaysHowToGoOn) {
-  const pid_t child = start({"sweep", in_folder("sweep.yaml"), "--store", in_folder("store.sqlite")});
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  kill(child, SIGINT);
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_EQ(WEXITSTATUS(status), 130);
-  EXPECT_THAT(slurp(folder / ("log" + std::to_string(child))), HasSubstr("the same command goes on"));
+  Background sweep = start({"sweep", in_folder("sweep.yaml"), "--store", in_folder("store.sqlite")});
+  sweep.ended_within(0.3);
+  sweep.send(SIGINT);
+  EXPECT_EQ(sweep.code(), 130);
+  EXPECT_THAT(slurp(folder / "log"), HasSubstr("the same command goes on"));
   for (const std::string& row : rows("store.sqlite")) EXPECT_THAT(row, testing::Not(HasSubstr(",running,")));
 }
 

@@ -1,7 +1,5 @@
 #include "tests/fuzz/targets.h"
 
-#include <unistd.h>
-
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -20,6 +18,7 @@
 #include "scree_version.h"
 #include "sim/io/mesh.h"
 #include "sim/io/results_store.h"
+#include "sim/io/scratch_folder.h"
 #include "sim/io/snapshot_reader.h"
 #include "sim/material/equivalence.h"
 #include "sim/material/grading.h"
@@ -45,10 +44,7 @@ void write(const fs::path& file, std::string_view bytes) {
 class Scratch {
  public:
   Scratch() {
-    std::string name = (fs::temp_directory_path() / "scree_fuzz_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    folder_ = name;
-    fs::current_path(folder_);
+    fs::current_path(folder_.path());
     write("drop.yaml",
           "material: {mu: 0.4, mu_r: 0.4}\ngrading: Lab_18_24mm\nexperiment: {type: drop_test, diameter_m: "
           "0.02, "
@@ -69,11 +65,10 @@ class Scratch {
   ~Scratch() {
     std::error_code none;
     fs::current_path("/", none);
-    fs::remove_all(folder_, none);
   }
 
  private:
-  fs::path folder_;
+  ScratchFolder folder_;
 };
 
 /// What readers promise to throw.

@@ -1,23 +1,24 @@
 #pragma once
 // A folder of its own with small assets, for tests of scenario files.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <string>
 #include <vector>
 
+#include "sim/io/scratch_folder.h"
 #include "sim/scene/scenario.h"
 
 namespace scree {
 
 /// DIR/assets (gradings, meshes, reference) and a place for scenario files; removed at the end.
 class ScenarioFolder {
+  ScratchFolder scratch_;
+
  public:
+  const std::filesystem::path dir = scratch_.path();
+
   ScenarioFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "scree_scenario_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    dir = name;
     const std::string head = "diameter_mm,passing_pct\n";
     write("assets/gradings/CM0.csv", head + "100,0\n1000,100\n");
     write("assets/gradings/fine.csv", head + "1,0\n1000,100\n");
@@ -37,14 +38,6 @@ class ScenarioFolder {
           "0.4,0.4,0.4,0.45,0.5,37,37.5\n");
     write("assets/reference/results.csv", "case,quantity\nA1,chi\nA1,mass\nC1,chi\n");
   }
-  ~ScenarioFolder() {
-    std::error_code none;
-    std::filesystem::remove_all(dir, none);
-  }
-  ScenarioFolder(const ScenarioFolder&) = delete;
-  ScenarioFolder& operator=(const ScenarioFolder&) = delete;
-
-  std::filesystem::path dir;
 
   std::filesystem::path write(const std::string& name, const std::string& text) const {
     std::filesystem::create_directories((dir / name).parent_path());
