@@ -34,6 +34,9 @@ constexpr double min_size = 1e-3;               // m
 constexpr double weld_tolerance = 1e-7;         // of the diagonal of the bounding box
 constexpr std::size_t stl_header_bytes = 84;    // 80 of text, 4 of the number of triangles
 constexpr std::size_t stl_triangle_bytes = 50;  // normal and corners as 12 floats, 2 bytes of attributes
+constexpr std::size_t glb_header_bytes = 12;    // magic, version, length of all
+constexpr std::size_t glb_chunk_bytes = 8;      // length and kind of a chunk, before its content
+constexpr std::size_t max_glb_chunks = 1000;    // a file has two, and those of extensions
 constexpr const char* allowed_extensions[] = {"stl", "obj", "ply", "gltf", "glb"};
 
 std::string lower(std::string text) {
@@ -96,6 +99,30 @@ std::optional<std::string> stl_refusal(const fs::path& file) {
   if (got < sizeof header) return "is not an STL file: too short";
   return fmt::format("is not an STL file, or cut short: it announces {} and has room for {}",
                      counted(announced, "triangle"), (size - stl_header_bytes) / stl_triangle_bytes);
+}
+
+/// A binary glTF must hold the chunks that it announces: a reader makes room for what a chunk says of itself.
+/// Khronos Group, glTF 2.0 specification, section 4.4.
+std::optional<std::string> glb_refusal(const fs::path& file) {
+  const std::uintmax_t size = fs::file_size(file);
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return "cannot be opened";
+  std::uint32_t header[3] = {}, chunk[2] = {};
+  stream.read(reinterpret_cast<char*>(header), sizeof header);
+  if (!stream || std::memcmp(header, "glTF", 4) != 0) return "is not a GLB file";
+  if (header[1] != 2) return fmt::format("is GLB of version {}, not 2", header[1]);
+  if (header[2] > size) return fmt::format("is cut short: it announces {} bytes and has {}", header[2], size);
+  std::size_t chunks = 0;
+  for (std::uintmax_t at = glb_header_bytes; at < header[2]; at += glb_chunk_bytes + chunk[0]) {
+    if (++chunks > max_glb_chunks) return fmt::format("has more than {} chunks", max_glb_chunks);
+    stream.seekg(static_cast<std::streamoff>(at));
+    stream.read(reinterpret_cast<char*>(chunk), sizeof chunk);
+    if (!stream || at + glb_chunk_bytes + chunk[0] > header[2])
+      return fmt::format(
+          "is not a GLB file, or cut short: the chunk at byte {} announces {} bytes, more than follow", at,
+          chunk[0]);
+  }
+  return std::nullopt;
 }
 
 /// Opens what the mesh file refers to (buffers of glTF, materials of OBJ) under the rules for the mesh file.
@@ -374,6 +401,8 @@ LoadedMesh load_mesh(const fs::path& file, double scale, double max_size) {
   }
   if (extension == "ply") {
     if (const auto complaint = ply_complaint(file)) return fail(": " + *complaint);
+  } else if (extension == "glb") {
+    if (const auto complaint = glb_refusal(file)) return fail(": " + *complaint);
   }
 
   std::size_t left_out = 0;
