@@ -51,8 +51,7 @@ Command run_command(CLI::App& all) {
     resume->excludes(app->get_option(other));
   app->footer(
       "\nExit codes: 0 done; 1 failed (disk full, no memory); 2 bad input; 3 the run broke the watch on "
-      "energy, "
-      "numbers and lost rock, or blew up, and does not count; 130 interrupted\n"
+      "energy, numbers and lost rock, or blew up, and does not count; 130 interrupted\n"
       "\nExamples:\n  scree run scenarios/quick_dump.yaml\n"
       "  scree run scenarios/a1_10m.yaml --seeds 5 --out runs/a1_five --set experiment.dumps=2\n"
       "  scree run --resume runs/a1_five\n");
@@ -116,8 +115,7 @@ Command predict_command(CLI::App& all) {
       ->excludes("--store");
   app->footer(
       "\nExample:\n  scree predict scenarios/sweeps/repose_lab.yaml material.mu=0.25 material.mu_r=0.3 "
-      "--from "
-      "assets/sweeps/repose_lab.csv\n");
+      "--from assets/sweeps/repose_lab.csv\n");
   return {app, [options] { return run_predict(*options); }};
 }
 
@@ -271,8 +269,7 @@ Command twin_command(CLI::App& all) {
   app->footer(
       "\nExamples:\n  scree twin scenarios/models/small_dump.yaml\n"
       "  scree twin scenarios/models/small_dump.yaml --effect cohesion --strength strong --seed 7 "
-      "--out "
-      "measured\n");
+      "--out measured\n");
   return {app, [options] { return run_twin(*options); }};
 }
 
@@ -299,8 +296,8 @@ Command field_command(CLI::App& all) {
   app->add_flag("--force", field.force, "Write into --out even if it holds something");
   app->footer(
       "\nExamples:\n  scree field --thesis\n  scree field gradings.csv --sieved assets/gradings/G0.csv "
-      "--limit "
-      "25.4cm\n  scree field gradings.csv --scenario scenarios/canadian_malartic_10m.yaml --observables "
+      "--limit 25.4cm\n  scree field gradings.csv --scenario scenarios/canadian_malartic_10m.yaml "
+      "--observables "
       "chi,d50_m\n");
   return {app, [options] { return run_field(*options); }};
 }

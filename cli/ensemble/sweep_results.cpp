@@ -176,7 +176,8 @@ std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const fs::path& fil
       expected.insert(expected.end(), {"seed", "state", "version", "wall_seconds"});
       if (header.size() < expected.size() + 1 ||
           !std::equal(expected.begin(), expected.end(), header.begin()) || header.back() != "message")
-        fail(fmt::format("not a table of this sweep: its columns begin with {} and end with message", fmt::join(expected, ",")));
+        fail(fmt::format("not a table of this sweep: its columns begin with {} and end with message",
+                         fmt::join(expected, ",")));
       for (auto name = header.begin(); name != header.end(); ++name)
         if (std::find(header.begin(), name, *name) != name)
           fail(fmt::format("the column {} stands twice", *name));

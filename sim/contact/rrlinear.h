@@ -93,6 +93,7 @@ struct ContactMotion {
   double twist;         ///< mean spin of the two about the normal, rad/s
   double reduced_mass;  ///< m1 m2 / (m1 + m2), kg; used by the dashpots only
   double dt;            ///< s
+  double pulls = 1;     ///< share of the pull that acts (share_closed)
 };
 
 /// Energy that one step of a contact takes from the motion for good, J (world/energy_balance.h).
@@ -178,11 +179,11 @@ SCREE_INLINE Real twisted_on(Real moment, Real added, Real limit, Real& lost) {
   return kept;
 }
 
-/// Part of a step for which the force of a place pulls. Pull is there at once when a contact closes and gone
-/// when it opens, unlike a spring's force, and both come somewhere on the way that led to this place. Of the
-/// way, over which the overlap was positive for a part, the force of the place before had its half if it was
-/// closed; this one has the rest, and if it is closed half of the way that leads on. So closing and opening
-/// make no energy to the first order of dt. `opening`: m/s.
+/// Share of the pull P that acts at a place, for steps of one length. On the way that led here the pull does
+/// the work P (max(u, 0) - max(before, 0)). The place before gave half of the way if it was closed; this one
+/// gives the rest, and half of the way ahead if it is closed: 1 while a contact stays closed, from 1/2 to 3/2
+/// where it closes, from -1/2 to 1/2 where it has opened. So neither makes energy to the first order of dt,
+/// as a pull that came with the first overlap, whole, would. `opening`: m/s.
 template <class Real>
 SCREE_INLINE Real share_closed(Real overlap, Real opening, double dt) {
   const Real none{}, one = none + 1.0, half = none + 0.5;
@@ -234,8 +235,7 @@ inline ContactForce contact_step(const ContactLaw& law, const ContactStiffness& 
     f.loss.twisting /= k.kr;
     f.rolling += history.twisting * n;
   }
-  const double pull = law.pull == 0 ? 0.0 : law.pull * k.rbar * share_closed(c.overlap, opening, c.dt);
-  f.force = shear - n * (fn - pull);
+  f.force = shear - n * (fn - c.pulls * law.pull * k.rbar);
   return f;
 }
 
@@ -288,7 +288,8 @@ SCREE_INLINE BasicContactForce<Lanes> contact_step(const ContactLaw& law, const 
   if constexpr (Friction::kEffects)
     mu = weakened(law, mu, wide(first_half(root(slip_and_bend.squaredNorm()))));
   // A contact that opens slips by all that it holds; of its force at most a pull is used.
-  const Lanes pressed = larger(fn, Lanes{});
+  const LaneMask closed = c.overlap > Lanes{};
+  const Lanes pressed = pick(closed, fn, Lanes{});
   const TwinFloats stiffness = twin(narrow(k.ks * c.dt), narrow(k.kr * c.dt)),
                    limit = twin(narrow(mu * pressed), narrow(friction.mu_r * k.rbar * pressed));
   TwinMask slips;
@@ -306,13 +307,15 @@ SCREE_INLINE BasicContactForce<Lanes> contact_step(const ContactLaw& law, const 
                 shear_viscosity = sticks * shear_dashpot(law, k, c.reduced_mass);
     const LaneVec3 slip = wide_first(slip_and_bend);
     if (law.beta_s > 0.0) shear = shear + slip * shear_viscosity;
-    const Lanes power = larger((k.kn * c.overlap - fn) * wide(first_half(along)), Lanes{}) +
-                        shear_viscosity * slip.squaredNorm();
+    const Lanes power = pick(closed,
+                             larger((k.kn * c.overlap - fn) * wide(first_half(along)), Lanes{}) +
+                                 shear_viscosity * slip.squaredNorm(),
+                             Lanes{});
     f.loss.dashpots = dashpot_work(power, wide(second_half(history.further)), c.dt);
     history.further = twin(first_half(history.further), narrow(power));
   }
   f.rolling = wide_second(history.springs);
-  f.force = shear - c.normal * fn;
+  Lanes along_normal = pressed;
   if constexpr (Friction::kEffects) {
     const Lanes twisting =
         twisted_on(wide(first_half(history.further)), k.kr * c.dt * wide(second_half(along)),
@@ -321,9 +324,10 @@ SCREE_INLINE BasicContactForce<Lanes> contact_step(const ContactLaw& law, const 
     const LaneFloats rounded = narrow(twisting);
     history.further = twin(rounded, second_half(history.further));
     f.rolling = f.rolling + c.normal * wide(rounded);
-    const Lanes pull = law.pull * k.rbar * share_closed(c.overlap, wide(first_half(along)), c.dt);
-    f.force = shear - c.normal * (pressed - pull);
+    if (law.pull > 0)
+      along_normal -= law.pull * k.rbar * share_closed(c.overlap, wide(first_half(along)), c.dt);
   }
+  f.force = shear - c.normal * along_normal;
   return f;
 }
 

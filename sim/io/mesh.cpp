@@ -112,15 +112,21 @@ std::optional<std::string> glb_refusal(const fs::path& file) {
   if (!stream || std::memcmp(header, "glTF", 4) != 0) return "is not a GLB file";
   if (header[1] != 2) return fmt::format("is GLB of version {}, not 2", header[1]);
   if (header[2] > size) return fmt::format("is cut short: it announces {} bytes and has {}", header[2], size);
+  if (header[2] < glb_header_bytes + glb_chunk_bytes) return "is not a GLB file: it announces no chunk";
   std::size_t chunks = 0;
   for (std::uintmax_t at = glb_header_bytes; at < header[2]; at += glb_chunk_bytes + chunk[0]) {
     if (++chunks > max_glb_chunks) return fmt::format("has more than {} chunks", max_glb_chunks);
+    if (at + glb_chunk_bytes > header[2]) return "is not a GLB file, or cut short: it ends within a chunk";
     stream.seekg(static_cast<std::streamoff>(at));
     stream.read(reinterpret_cast<char*>(chunk), sizeof chunk);
-    if (!stream || at + glb_chunk_bytes + chunk[0] > header[2])
+    if (!stream) return "cannot be read";
+    if (at + glb_chunk_bytes + chunk[0] > header[2])
       return fmt::format(
           "is not a GLB file, or cut short: the chunk at byte {} announces {} bytes, more than follow", at,
           chunk[0]);
+    if (chunk[0] % 4 != 0)
+      return fmt::format("is not a GLB file: the chunk at byte {} has {} bytes, no multiple of 4", at,
+                         chunk[0]);
   }
   return std::nullopt;
 }

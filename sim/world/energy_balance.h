@@ -22,7 +22,8 @@
 // dashpot's force is c v, and its work on d(n) is v(n) . (v(n-1) + v(n)) / 2 c dt, for which the power of the
 // step before is remembered: |v(n-1)| |v(n)| in place of the product. Where velocities lie half a step beyond
 // places, at the end of the account, and where a step begins or ends a contact, energy is off by O(dt) of
-// what that contact holds; it does not add up.
+// what that contact holds; it does not add up. Of the pull of cohesion, which does not grow from nothing, the
+// force itself makes up for it (share_closed in contact/rrlinear.h).
 namespace scree {
 
 /// Energy taken from the motion for good, J.

@@ -254,7 +254,8 @@ void RrlinearWorld::mesh_forces(BlockWork& work, double dt) {
     ContactMotion motion;
     double arm = 0;
     Vec3 point;
-    const auto step_of = [&](MeshContact& c) {
+    const auto opened = [&] { return motion.velocity.dot(motion.normal) * last_dt_; };
+    const auto step_of = [&](MeshContact& c, bool went_on) {
       const MeshBody& body = *meshes_[c.body];
       law.mu = body.surface().mu * own.mu;
       law.mu_r = body.surface().mu_r * own.mu_r;
@@ -268,6 +269,9 @@ void RrlinearWorld::mesh_forces(BlockWork& work, double dt) {
       motion.twist = 0.5 * (w + body.state().spin).dot(motion.normal);
       motion.reduced_mass = spheres_.velocity[i].w;
       motion.dt = last_dt_;
+      motion.pulls = 1;  // of one that goes on or begins while pressed
+      if (law.pull > 0 && !went_on && c.overlap + opened() <= 0)
+        motion.pulls = share_closed(c.overlap, motion.velocity.dot(motion.normal), last_dt_);
       const ContactForce f = contact_step(law, stiffness, motion, c.history);
       work.losses.add({f.loss.sliding, f.loss.rolling, f.loss.twisting, f.loss.dashpots, 0});
       return f;
@@ -285,7 +289,6 @@ void RrlinearWorld::mesh_forces(BlockWork& work, double dt) {
     // shifts or ends while pressed, and brings or takes energy (EnergyAccount::pressed). One that is there at
     // one end of the step only has half of its force on the way to the overlap that it would have at the
     // other.
-    const auto opened = [&] { return motion.velocity.dot(motion.normal) * last_dt_; };
     const auto jump = [&](double overlap, double other) {
       return 0.5 * (stiffness.kn * overlap * other - law.pull * stiffness.rbar * (overlap + other));
     };
@@ -299,7 +302,7 @@ void RrlinearWorld::mesh_forces(BlockWork& work, double dt) {
       }
       MeshContact ended = before;
       ended.overlap = 0;
-      step_of(ended);
+      step_of(ended, true);
       const double still = before.overlap - opened();
       if (still > 0)
         work.pressed -= jump(before.overlap, still);
@@ -313,7 +316,7 @@ void RrlinearWorld::mesh_forces(BlockWork& work, double dt) {
     int count = 0;
     for (MeshContact& c : contacts) {
       if (c.body < 0) break;
-      add(c, step_of(c));
+      add(c, step_of(c, count < went_on));
       sum_[i].force.w += 1;
       work.overlap_ratio = std::max(work.overlap_ratio, c.overlap / place.w);
       if (count < went_on) {

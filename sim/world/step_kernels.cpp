@@ -72,7 +72,8 @@ void close_or_open(const StepView& view, BlockWork& work, int i, Neighbour& entr
 SCREE_INLINE void add_force(const StepView& view, BlockWork& work, int i, int j, const Neighbour& entry,
                             Lanes force, Lanes torque1, Lanes torque2) {
   const Spheres& s = view.spheres;
-  if (view.sleep.asleep() > 0) disturb(view, work, i, j, entry, Vec3(force[0], force[1], force[2]));
+  const bool closed = force[3] > 0;  // what is left of the pull of one that has opened disturbs nobody
+  if (closed && view.sleep.asleep() > 0) disturb(view, work, i, j, entry, Vec3(force[0], force[1], force[2]));
   if (!s.asleep[i]) {
     ForceSum& own = view.sum[i];
     store(own.force, load(own.force) + force);

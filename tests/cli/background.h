@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 class Background {
@@ -24,6 +25,13 @@ class Background {
     dup2(file, STDOUT_FILENO), dup2(file, STDERR_FILENO);
     execv(arguments.front(), arguments.data());
     _exit(127);
+  }
+
+  Background(Background&& other) noexcept
+      : child_(other.child_), ended_(std::exchange(other.ended_, true)), status_(other.status_) {}
+  ~Background() {
+    send(SIGKILL);
+    code();
   }
 
   /// Waits until it has ended, or `there()`, and no longer than this. True if it has ended.

@@ -11,9 +11,9 @@
 namespace scree {
 namespace {
 
-// Hash of where every grain of a small bucket and of a small dump ends, to the last bit. When it changes, and
-// is meant to, raise kResultsRevision, so that nobody's store answers with numbers of the older program, and
-// put both here.
+// Hash of where every grain of a small bucket and of a small dump, plain and with effects, ends, to the last
+// bit. When it changes, and is meant to, raise kResultsRevision, so that nobody's store answers with numbers
+// of the older program, and put both here.
 TEST(ResultsRevision, IsRaisedWhenNumbersChange) {
   const std::string source = SCREE_SOURCE_DIR;
   struct Small {
@@ -21,11 +21,15 @@ TEST(ResultsRevision, IsRaisedWhenNumbersChange) {
     std::vector<std::string> overrides;
   };
   std::string text;
-  for (const Small& small :
-       {Small{"repose_lab.yaml", {"experiment.mass_kg=2"}},
-        Small{"quick_dump.yaml",
-              {"experiment.payload_t=5", "experiment.bench.height_m=3", "experiment.bench.width_m=30",
-               "experiment.bench.top_length_m=10", "experiment.bench.floor_length_m=15"}}}) {
+  const std::vector<std::string> small_dump = {
+      "experiment.payload_t=5", "experiment.bench.height_m=3", "experiment.bench.width_m=30",
+      "experiment.bench.top_length_m=10", "experiment.bench.floor_length_m=15"};
+  std::vector<std::string> with_effects = small_dump;
+  for (const char* effect : {"cohesion.bond_number=1", "sticky_tools.bond_number=1", "twisting.mu_t=0.1",
+                             "weakening.share=0.3", "restitution.damping_ratio=0.2"})
+    with_effects.push_back(std::string("effects.") + effect);
+  for (const Small& small : {Small{"repose_lab.yaml", {"experiment.mass_kg=2"}},
+                             Small{"quick_dump.yaml", small_dump}, Small{"quick_dump.yaml", with_effects}}) {
     ScenarioResult loaded =
         load_scenario(source + "/scenarios/" + small.file, small.overrides, source + "/assets");
     ASSERT_TRUE(loaded.errors.empty()) << loaded.errors.front().text();
@@ -33,8 +37,8 @@ TEST(ResultsRevision, IsRaisedWhenNumbersChange) {
       text +=
           fmt::format("{} {} {} {}\n", grain.id, grain.position.x(), grain.position.y(), grain.position.z());
   }
-  EXPECT_EQ(kResultsRevision, 2);
-  EXPECT_EQ(fmt::format("{:016x}", XXH3_64bits(text.data(), text.size())), "1e3aadd9ab7dfdb5");
+  EXPECT_EQ(kResultsRevision, 3);
+  EXPECT_EQ(fmt::format("{:016x}", XXH3_64bits(text.data(), text.size())), "6669992ef94d9e04");
 }
 
 }  // namespace

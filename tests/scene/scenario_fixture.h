@@ -13,7 +13,7 @@ namespace scree {
 
 /// DIR/assets (gradings, meshes, reference) and a place for scenario files; removed at the end.
 class ScenarioFolder {
-  ScratchFolder scratch_;
+  ScratchFolder scratch_;  // before all that lies in it
 
  public:
   const std::filesystem::path dir = scratch_.path();

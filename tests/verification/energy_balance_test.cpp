@@ -178,6 +178,24 @@ TEST(EnergyBalance, PullOfAnImpactMakesNoEnergy) {
   }
 }
 
+// Pull of a mesh on a ball that rolls over its rim, where faces hand the contact over, and on one that was
+// put into it and is driven out: the account closes.
+TEST(EnergyBalance, PullAtARimAndOutOfAWall) {
+  WorldSettings settings = undamped(kDt);
+  settings.material.local_damping = 0.2;
+  const double weight = ball_mass(settings.material, kRadius) * kGravity;
+  settings.contact_effects.surface_energy =
+      0.5 * weight / (2 * std::numbers::pi * kRadius);  // half the weight
+  for (const NewSphere& one :
+       {ball({-0.2, 0, kRadius}, kRadius, {1, 0, 0}), ball({-1, 0, 0.3 * kRadius}, kRadius, {0, 0, 2})}) {
+    RrlinearWorld world(settings);
+    world.add_mesh(make_box({-5, -2, -2}, {0, 2, 0}), Surface{0.4, 0.1}, Motion());
+    world.add_spheres({one});
+    world.advance_to(0.6);
+    EXPECT_LT(std::abs(balance_of(world).relative_error()), 2e-3) << one.position.x();
+  }
+}
+
 // A sphere beyond the domain takes its energy along.
 TEST(EnergyBalance, LostSphereTakesItsEnergyAlong) {
   WorldSettings settings = undamped(1e-3);

@@ -218,8 +218,8 @@ TEST(World, LostSphereIsCountedAndMissedByNobody) {
   EXPECT_EQ(with.snapshot().grains.size(), b.grains.size());
 }
 
-// Neighbours are known over some hundredths of a radius only; what comes from forty radii away must be found in
-// time. Elastic and of equal mass, the spheres exchange their velocities.
+// Neighbours are known over some hundredths of a radius only; what comes from forty radii away must be found
+// in time. Elastic and of equal mass, the spheres exchange their velocities.
 TEST(World, WhatComesFromAfarIsMet) {
   WorldSettings settings;
   settings.gravity = Vec3::Zero();
