@@ -17,7 +17,7 @@ TEST_P(LateTool, PushesSleepersBeforeIt) {
   settings.sleep = true;
   RrlinearWorld world(settings);
   world.add_mesh(make_box({-10, -5, -1}, {20, 5, 0}), {0.44, 0.44}, Motion());
-  const auto at = [&](double x) { return Pose{{x, 0, 0.2 * radius}, Quaternion::Identity()}; };
+  const auto at = [&, radius = radius](double x) { return Pose{{x, 0, 0.2 * radius}, Quaternion::Identity()}; };
   world.add_mesh(make_box({-0.5, -2, 0}, {0, 2, 1}), {0.44, 0.44},
                  Motion({{0.0, at(-3)}, {10.0, at(-3)}, {10.0 + 6.0 / speed, at(3)}}));
   std::vector<NewSphere> balls;
