@@ -10,6 +10,11 @@
 
 namespace {
 
+// What every command has that writes into a folder.
+void add_force_flag(CLI::App* app, bool& force) {
+  app->add_flag("--force", force, "Write into --out even if it holds something");
+}
+
 // What every command has that brings runs into a store.
 void add_ensemble_options(CLI::App* app, EnsembleOptions& ensemble) {
   app->add_option("--store", ensemble.store,
@@ -38,7 +43,7 @@ Command run_command(CLI::App& all) {
                   "Folder for the results; default: runs/NAME, or runs/NAME-2 ... when it exists");
   app->add_option("--set", run.overrides, "Change a value: --set material.mu=0.5 (may be repeated)")
       ->take_all();
-  app->add_flag("--force", run.force, "Write into --out even if it holds something");
+  add_force_flag(app, run.force);
   app->add_flag("--summary-only", run.summary_only,
                 "Write summary.json and sections.csv, no report and no pictures");
   app->add_option("--checkpoint-minutes", run.checkpoint_minutes,
@@ -96,7 +101,7 @@ Command calibrate_command(CLI::App& all) {
   app->add_option("file", calibrate.file, "Calibration file (YAML)")->required();
   add_ensemble_options(app, calibrate.ensemble);
   app->add_option("--out", calibrate.out, "Folder for the result; default: runs/NAME");
-  app->add_flag("--force", calibrate.force, "Write into --out even if it holds something");
+  add_force_flag(app, calibrate.force);
   app->footer(
       "\nExamples:\n  scree calibrate scenarios/calibrations/lab_angle.yaml\n"
       "\nAn interrupted calibration goes on where it stopped when it is started again.\n");
@@ -129,7 +134,7 @@ Command reproduce_command(CLI::App& all) {
   add_ensemble_options(app, reproduce.ensemble);
   app->add_option("--out", reproduce.out, "Folder for the report; default: a free runs/reproduction");
   app->add_flag("--list", reproduce.list, "Report what the store has; run nothing");
-  app->add_flag("--force", reproduce.force, "Write into --out even if it holds something");
+  add_force_flag(app, reproduce.force);
   app->add_option("--from", reproduce.from,
                   "Take the runs from this exported table, not from a store; run nothing")
       ->excludes("--store")
@@ -153,7 +158,7 @@ Command study_command(CLI::App& all) {
   add_ensemble_options(app, study.ensemble);
   app->add_option("--out", study.out, "Folder for the report; default: a free runs/NAME");
   app->add_flag("--list", study.list, "Report what the store has; run nothing");
-  app->add_flag("--force", study.force, "Write into --out even if it holds something");
+  add_force_flag(app, study.force);
   app->footer("\nExample:\n  scree study scenarios/studies/disposal_qb.yaml\n");
   return {app, [options] { return run_study(*options); }};
 }
@@ -200,7 +205,7 @@ Command analyse_command(CLI::App& all) {
       ->check(CLI::IsMember({"z", "y"}));
   app->add_option("--shift", analyse.shift, "Added to all places, after turning: x,y,z in metres");
   app->add_option("--out", analyse.out, "Folder for dataset.yaml and observables.csv");
-  app->add_flag("--force", analyse.force, "Write into --out even if it holds something");
+  add_force_flag(app, analyse.force);
   app->add_option("--observables", analyse.observables,
                   "What goes into the dataset; default: angles, chi, masses, form of a heap")
       ->delimiter(',')
@@ -229,7 +234,7 @@ Command diagnose_command(CLI::App& all) {
   app->add_flag("--plan", diagnose.plan, "Say how many simulations it needs and how long; run none");
   add_ensemble_options(app, diagnose.ensemble);
   app->add_option("--out", diagnose.out, "Folder for the report; default: a free runs/NAME");
-  app->add_flag("--force", diagnose.force, "Write into --out even if it holds something");
+  add_force_flag(app, diagnose.force);
   app->footer(
       "\nExamples:\n"
       "  scree diagnose assets/datasets/laboratory/dataset.yaml --model scenarios/models/laboratory.yaml "
@@ -265,7 +270,7 @@ Command twin_command(CLI::App& all) {
   app->add_option("--out", twin.out,
                   "Folder for dataset.yaml and observables.csv; default: a free runs/twin");
   app->add_option("--answer", twin.answer, "File for the sealed answer; default: OUT.answer.json");
-  app->add_flag("--force", twin.force, "Write into --out even if it holds something");
+  add_force_flag(app, twin.force);
   app->footer(
       "\nExamples:\n  scree twin scenarios/models/small_dump.yaml\n"
       "  scree twin scenarios/models/small_dump.yaml --effect cohesion --strength strong --seed 7 "
@@ -293,7 +298,7 @@ Command field_command(CLI::App& all) {
   app->add_flag("--thesis", field.thesis,
                 "Take the pictures, the sample and the printed values of the thesis");
   app->add_option("--out", field.out, "Folder for the results; default: a free runs/NAME");
-  app->add_flag("--force", field.force, "Write into --out even if it holds something");
+  add_force_flag(app, field.force);
   app->footer(
       "\nExamples:\n  scree field --thesis\n  scree field gradings.csv --sieved assets/gradings/G0.csv "
       "--limit 25.4cm\n  scree field gradings.csv --scenario scenarios/canadian_malartic_10m.yaml "
@@ -362,7 +367,7 @@ Command image_command(CLI::App& all) {
                   "Standard uncertainty in the dataset of values from one photograph, as a share of them")
       ->check(CLI::PositiveNumber);
   app->add_option("--out", image.out, "Folder for the results; default: a free runs/image");
-  app->add_flag("--force", image.force, "Write into --out even if it holds something");
+  add_force_flag(app, image.force);
   app->footer(
       "\nExamples:\n  scree image slope.jpg --scale 1.2cm/px --sections 6\n"
       "  scree image slope1.jpg slope2.jpg --target-diameter 50cm --scenario "
