@@ -15,19 +15,21 @@ namespace {
 constexpr double kBase1 = 1, kBase2 = 0.5, kBase11 = 0.5, kBase3 = 0.3;
 constexpr double kEffect1 = 1, kEffect2 = 0.6, kEffect3 = 0.4, kWithBase = 0.5, kWithOther = 0.5,
                  kWithOther2 = 0.3, kTogether = 0.5;
-constexpr double kHat = 1;
-constexpr int kHats = 5;           // along an amplitude, each a sixth of the range wide to either side
+constexpr double kRamp = 1, kRampWithBase = 1;  // where all ramps are done
+constexpr int kRamps = 8;                       // along an amplitude's root
 constexpr double kConstant = 1e4;  // of the scatter
 
-// Sizes that a group may have, over the scatter; half a unit of a normal prior on their logarithm each way.
+// Sizes that a group may have, over the scatter; normal prior on their logarithm.
 constexpr std::array<double, 11> kSizes{0.02, 0.1, 0.3, 0.7, 1.5, 3, 6, 15, 50, 200, 1000};
-constexpr double kLogSizeMean = 0, kLogSizeStd = 2;
-constexpr double kLogHatMean = -3, kLogHatStd = 1.5;  // hats are for what polynomials cannot do
+constexpr double kLogSizeStd = 2;
 constexpr int kMostSweeps = 6;
+constexpr double kTiny = 1e-12;
 
-// 1 at the knot, 0 from its neighbours on; knots of negative amplitudes are negative.
-double hat(double amplitude, int knot) {
-  return std::max(0.0, 1 - std::abs((kHats + 1) * amplitude - knot));
+// From 0 to 1 along one of the kRamps parts of the root of the amplitude's range; those of negative amplitudes have
+// negative numbers.
+double ramp(double amplitude, int part) {
+  const double along = std::sqrt(std::max(0.0, part > 0 ? amplitude : -amplitude));
+  return std::clamp(kRamps * along - (std::abs(part) - 1), 0.0, 1.0);
 }
 
 double power(double x, int n) {
@@ -47,11 +49,12 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
   const std::size_t p = space.base.size();
   const std::vector<int> none(p, 0);
   const auto base = [&](double prior, std::initializer_list<std::size_t> axes) {
-    Term term{0, -1, prior, none};
+    Term term{0, prior, none};
     for (const std::size_t axis : axes) ++term.base_power[axis];
     terms_.push_back(std::move(term));
   };
-  base(0, {});  // the constant; its prior is its own
+  base(kConstant, {});
+  terms_.back().group = -1;
   for (std::size_t i = 0; i < p; ++i) {
     base(kBase1, {i});
     base(kBase2, {i, i});
@@ -69,30 +72,32 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
     }
   for (std::size_t e = 0; e < space.effects.size(); ++e) {
     if (!acts_[e] || !simulated[e]) continue;
-    const int effect = static_cast<int>(e), group = effect + 1;
-    const auto add = [&](double prior, int order, int other) {
-      terms_.push_back({group, -1, prior, none, effect, order, other});
+    const int effect = static_cast<int>(e), polynomial = effect + 1,
+              ramps = polynomial + static_cast<int>(space.effects.size());
+    const auto add = [&](double prior, int order, int other) -> Term& {
+      return terms_.emplace_back(Term{polynomial, prior, none, effect, order, other});
     };
     add(kEffect1, 1, 0);
     add(kEffect2, 2, 0);
     add(kEffect3, 3, 0);
-    for (int knot = -kHats; knot <= kHats; ++knot) {
-      if (knot == 0 || (knot < 0 ? space.effects[e].lowest() >= 0 : space.effects[e].highest() <= 0))
-        continue;
-      add(kHat, 0, 0);
-      terms_.back().hat = knot;
-      terms_.back().group += static_cast<int>(space.effects.size());
-    }
-    for (std::size_t i = 0; i < p; ++i) {
-      add(kWithBase, 1, 0);
-      terms_.back().base_power[i] = 1;
-    }
+    for (std::size_t i = 0; i < p; ++i) add(kWithBase, 1, 0).base_power[i] = 1;
     for (std::size_t k = 1; k < space.effects[e].axes.size(); ++k) {
       add(kWithOther, 1, static_cast<int>(k));
       add(kWithOther2, 2, static_cast<int>(k));
     }
+    for (int part = -kRamps; part <= kRamps; ++part) {
+      if (part == 0 || (part < 0 ? space.effects[e].lowest() >= 0 : space.effects[e].highest() <= 0))
+        continue;
+      const auto add_ramp = [&](double prior) -> Term& {
+        return terms_.emplace_back(
+            Term{ramps, prior / std::sqrt(double{kRamps}), none, effect, 0, 0, -1, part});
+      };
+      add_ramp(kRamp);
+      for (std::size_t i = 0; i < p; ++i) add_ramp(kRampWithBase).base_power[i] = 1;
+    }
   }
-  for (const auto& [a, b] : together) terms_.push_back({a + 1, b + 1, kTogether, none, a, 1, 0, b});
+  groups_ = 1 + 2 * static_cast<int>(space.effects.size());
+  for (const auto& [a, b] : together) terms_.push_back({groups_++, kTogether, none, a, 1, 0, b});
   known_pairs_.assign(together.begin(), together.end());
 }
 
@@ -109,7 +114,8 @@ void ResponseSurface::values(const ModelPoint& point, std::vector<Eigen::Index>&
     if (term.effect >= 0) {
       const EffectAt* effect = there[static_cast<std::size_t>(term.effect)];
       if (effect == nullptr) continue;
-      product = term.hat != 0 ? hat(effect->amplitude(), term.hat) : power(effect->amplitude(), term.power);
+      product =
+          term.ramp != 0 ? ramp(effect->amplitude(), term.ramp) : power(effect->amplitude(), term.power);
       if (product == 0) continue;
       if (term.other > 0) product *= effect->at[term.other];
     }
@@ -125,70 +131,84 @@ void ResponseSurface::values(const ModelPoint& point, std::vector<Eigen::Index>&
   }
 }
 
-ResponseSurface::Fit ResponseSurface::fit(const Eigen::MatrixXd& features, const Eigen::VectorXd& y) const {
-  const Eigen::Index n = features.rows(), k = features.cols();
-  const Eigen::MatrixXd square = features.transpose() * features;
-  const Eigen::VectorXd product = features.transpose() * y;
-  const double yy = y.squaredNorm();
-  Eigen::VectorXd size = Eigen::VectorXd::Ones(groups_), prior(k);
-  Eigen::LLT<Eigen::MatrixXd> factor;
-  double misfit = 0;
-  // Logarithm of the marginal likelihood with the scatter's variance at its best, times the prior of sizes.
-  const auto evaluate = [&] {
-    double log_density = 0;
-    for (Eigen::Index t = 0; t < k; ++t) {
-      const Term& term = terms_[static_cast<std::size_t>(t)];
-      const double first = size[term.group];
-      prior[t] = term.prior == 0         ? kConstant
-                 : term.second_group < 0 ? term.prior * first
-                                         : term.prior * std::sqrt(first * size[term.second_group]);
-    }
-    Eigen::MatrixXd a = square;
-    a.diagonal() += prior.cwiseAbs2().cwiseInverse();
-    factor.compute(a);
-    misfit = std::max(yy - product.dot(factor.solve(product)), 1e-12 * yy + 1e-300);
-    log_density -= prior.array().log().sum();
-    log_density -= factor.matrixLLT().diagonal().array().log().sum();
-    log_density -= 0.5 * static_cast<double>(n) * std::log(misfit);
+// The size of one group after the other is put to its best. With V the group's features times their priors and
+// Q the inverse of the runs' covariance, a change d of the size's square changes that covariance by d V V': its
+// determinant by the product of 1 + d l over the eigenvalues l of V' Q V, and what the likelihood has of y the same
+// way.
+ResponseSurface::Fit ResponseSurface::fit(const Features& features, const Eigen::VectorXd& y) const {
+  const Eigen::Index n = features.all.rows(), k = features.all.cols();
+  Eigen::VectorXd size = Eigen::VectorXd::Ones(groups_);
+  const auto factor = [&] {
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(n, n, kConstant * kConstant);
+    covariance.diagonal().array() += 1;
     for (Eigen::Index g = 0; g < groups_; ++g) {
-      const bool hats = g > static_cast<Eigen::Index>(acts_.size());
-      const double z =
-          (std::log(size[g]) - (hats ? kLogHatMean : kLogSizeMean)) / (hats ? kLogHatStd : kLogSizeStd);
-      log_density -= 0.5 * z * z;
+      const Eigen::MatrixXd& v = features.groups[static_cast<std::size_t>(g)];
+      if (v.cols() > 0) covariance.selfadjointView<Eigen::Lower>().rankUpdate(v, size[g] * size[g]);
     }
-    return log_density;
+    return Eigen::LLT<Eigen::MatrixXd>(covariance);
   };
-  std::vector<bool> used(static_cast<std::size_t>(groups_), false);
-  for (const Term& term : terms_) used[static_cast<std::size_t>(term.group)] = true;
-  double best = evaluate();
+  const double least = kTiny * y.squaredNorm() + 1e-300;
   bool moved = true;
   for (int sweep = 0; sweep < kMostSweeps && moved; ++sweep) {
     moved = false;
+    Eigen::MatrixXd q = factor().solve(Eigen::MatrixXd::Identity(n, n));
+    Eigen::VectorXd qy = q * y;
+    double misfit = y.dot(qy);
     for (Eigen::Index g = 0; g < groups_; ++g) {
-      if (!used[static_cast<std::size_t>(g)]) continue;
+      const Eigen::MatrixXd& v = features.groups[static_cast<std::size_t>(g)];
+      if (v.cols() == 0) continue;
+      Eigen::MatrixXd qv = q * v;
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(v.transpose() * qv);
+      const Eigen::ArrayXd values = eigen.eigenvalues().cwiseMax(0.0),
+                           along = (eigen.eigenvectors().transpose() * (v.transpose() * qy)).array();
+      const auto shrunk = [&](double change) -> Eigen::ArrayXd {
+        return change / (1 + change * values).max(kTiny);
+      };
+      const auto misfit_at = [&](double change) {
+        return std::max(misfit - (shrunk(change) * along.square()).sum(), least);
+      };
       const double before = size[g];
-      double chosen = before;
-      for (const double candidate : kSizes) {
-        size[g] = candidate;
-        const double here = evaluate();
-        if (here > best + 1e-9) {
+      // Logarithm of the marginal likelihood with the scatter's variance at its best, times the size's prior.
+      const auto log_density = [&](double here) {
+        const double change = here * here - before * before, z = std::log(here) / kLogSizeStd;
+        return -0.5 * ((1 + change * values).max(kTiny).log().sum() +
+                       static_cast<double>(n) * std::log(misfit_at(change)) + z * z);
+      };
+      double best = log_density(before), chosen = before;
+      for (const double candidate : kSizes)
+        if (const double here = log_density(candidate); here > best + 1e-9) {
           best = here;
           chosen = candidate;
-          moved = moved || candidate != before;
         }
-      }
+      if (chosen == before) continue;
+      moved = true;
       size[g] = chosen;
+      const double change = chosen * chosen - before * before;
+      misfit = misfit_at(change);
+      qv = (qv * eigen.eigenvectors()).eval();
+      const Eigen::MatrixXd lost = qv * shrunk(change).matrix().asDiagonal();
+      q.noalias() -= lost * qv.transpose();
+      qy.noalias() -= lost * along.matrix();
     }
   }
-  evaluate();
+  const Eigen::LLT<Eigen::MatrixXd> last = factor();
+  Eigen::VectorXd variance(k);  // of the coefficients a priori
+  for (Eigen::Index t = 0; t < k; ++t) {
+    const Term& term = terms_[static_cast<std::size_t>(t)];
+    const double deviation = term.prior * (term.group < 0 ? 1.0 : size[term.group]);
+    variance[t] = deviation * deviation;
+  }
+  const Eigen::MatrixXd with_runs = features.all * variance.asDiagonal();  // covariance of runs and coefficients
+  const Eigen::MatrixXd gain = last.solve(with_runs).transpose();
   Fit fit;
-  fit.scatter = misfit / static_cast<double>(n);
-  fit.mean = factor.solve(product);
-  const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(k, k));
-  fit.covariance = fit.scatter * inverse;
+  fit.scatter = std::max(y.dot(last.solve(y)), least) / static_cast<double>(n);
+  fit.mean = gain * y;
+  fit.covariance = -gain * with_runs;
+  fit.covariance.diagonal() += variance;
+  fit.covariance *= fit.scatter;
   fit.size = size;
-  fit.residual = y - features * fit.mean;
-  const Eigen::VectorXd leverage = (features * inverse).cwiseProduct(features).rowwise().sum();
+  fit.residual = y - features.all * fit.mean;
+  const Eigen::VectorXd leverage = features.all.cwiseProduct(gain.transpose()).rowwise().sum();
   fit.freedom = std::max(static_cast<double>(n) - leverage.sum(), 1.0);
   double sum = 0;
   for (Eigen::Index i = 0; i < n; ++i)
@@ -201,7 +221,6 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
                                  const std::vector<DesignRun>& runs) {
   for (const CandidateEffect& effect : space.effects) acts_.push_back(effect.acts_in(experiment));
   if (acts_.size() > 64) throw std::invalid_argument("at most 64 effects");
-  groups_ = 1 + 2 * static_cast<int>(space.effects.size());
   const auto n = static_cast<Eigen::Index>(runs.size());
   const auto plain =
       std::count_if(runs.begin(), runs.end(), [](const auto& r) { return r.at.effects.empty(); });
@@ -211,14 +230,23 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
                     plain, least_base_runs(space.base.size())));
   make_terms(space, runs);
   const Eigen::Index p = runs.front().outputs.size(), k = static_cast<Eigen::Index>(terms_.size());
-  Eigen::MatrixXd features = Eigen::MatrixXd::Zero(n, k), y(n, p);
+  Features features{Eigen::MatrixXd::Zero(n, k), {}};
+  Eigen::MatrixXd y(n, p);
   std::vector<Eigen::Index> which;
   std::vector<double> value;
   for (Eigen::Index i = 0; i < n; ++i) {
     const DesignRun& run = runs[static_cast<std::size_t>(i)];
     values(run.at, which, value);
-    for (std::size_t t = 0; t < which.size(); ++t) features(i, which[t]) = value[t];
+    for (std::size_t t = 0; t < which.size(); ++t) features.all(i, which[t]) = value[t];
     y.row(i) = run.outputs.transpose();
+  }
+  for (int g = 0; g < groups_; ++g) {
+    std::vector<Eigen::Index> columns;
+    for (Eigen::Index t = 0; t < k; ++t)
+      if (terms_[static_cast<std::size_t>(t)].group == g) columns.push_back(t);
+    features.groups.emplace_back(features.all(Eigen::all, columns));
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      features.groups.back().col(static_cast<Eigen::Index>(c)) *= terms_[static_cast<std::size_t>(columns[c])].prior;
   }
   centre_ = y.colwise().mean();
   const Eigen::MatrixXd off = y.rowwise() - centre_.transpose();

@@ -38,14 +38,16 @@ Eigen::VectorXd coordinates(const std::vector<double>& unit, std::size_t first, 
   return x;
 }
 
-// Amplitudes spread evenly over the range, none of them 0.
+// Amplitudes over the range, none of them 0, the closer to each other the smaller: much of what an effect does it
+// does at the low end of its range (a rock is sticky or not), and there data can tell how much of it there is.
 double amplitude(const CandidateEffect& effect, int k, int count) {
   const double low = effect.lowest(), high = effect.highest();
-  const double share = static_cast<double>(k) / (count - 1);
-  if (low >= 0) return high * (k + 1) / count;
-  if (high <= 0) return low * (k + 1) / count;
-  const double here = low + share * (high - low);
-  return std::abs(here) > 1e-6 ? here : 0.5 * high / count;
+  const auto spread = [](double share) { return share * std::abs(share); };
+  if (low >= 0) return high * spread(static_cast<double>(k + 1) / count);
+  if (high <= 0) return low * spread(static_cast<double>(k + 1) / count);
+  const double share = 2 * (k + 0.5) / count - 1;  // -1 to 1
+  const double here = spread(std::abs(share) > 1e-6 ? share : 0.5 / count);
+  return here < 0 ? -here * low : here * high;
 }
 
 bool moved(const ModelPoint& a, const ModelPoint& b) {

@@ -20,6 +20,7 @@ namespace {
 
 constexpr int kBadInput = 2, kInterrupted = 130;       // exit status of a run
 constexpr auto kLook = std::chrono::milliseconds(20);  // between looks at the processes
+constexpr double kLastCheckpoint = 30;                 // s that interrupted runs may take for it
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -140,11 +141,17 @@ std::vector<double> LocalProcesses::shares() const {
 }
 
 void LocalProcesses::cancel() {
-  for (const Process& process : processes_) kill(process.pid, SIGKILL);
-  for (const Process& process : processes_)
-    while (waitpid(process.pid, nullptr, 0) < 0 && errno == EINTR) {
-    }
-  processes_.clear();
+  for (const Process& process : processes_) kill(process.pid, checkpoint_minutes_ > 0 ? SIGINT : SIGKILL);
+  const double until = now() + kLastCheckpoint;
+  while (!processes_.empty()) {
+    std::erase_if(processes_, [](const Process& process) {
+      const pid_t ended = waitpid(process.pid, nullptr, WNOHANG);
+      return ended == process.pid || (ended < 0 && errno == ECHILD);
+    });
+    if (now() >= until)
+      for (const Process& process : processes_) kill(process.pid, SIGKILL);
+    if (!processes_.empty()) std::this_thread::sleep_for(kLook);
+  }
 }
 
 }  // namespace scree

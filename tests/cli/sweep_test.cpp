@@ -143,6 +143,30 @@ TEST_F(SweepCli, InterruptGivesBackAndSaysHowToGoOn) {
   for (const std::string& row : rows("store.sqlite")) EXPECT_THAT(row, testing::Not(HasSubstr(",running,")));
 }
 
+// Long before the first checkpoint that its time would bring.
+TEST_F(SweepCli, InterruptedInTheMiddleOfARunItGoesOnFromThere) {
+  write("sweep.yaml", head +
+                          "seeds: [1]\nset: {experiment.mass_kg: 4}\n"
+                          "design: {type: list, points: [{material.mu: 0.2}]}\n");
+  const std::string sweep = in_folder("sweep.yaml");
+  ASSERT_EQ(call("sweep " + sweep + " --store " + in_folder("whole.sqlite")).code, 0);
+  const fs::path work = folder / "store.sqlite.work";
+  Background run = start({"sweep", sweep, "--store", in_folder("store.sqlite")});
+  run.ended_before([&] {  // under way: its folder of results is there
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(work, none))
+      if (fs::exists(entry.path() / "run")) return true;
+    return false;
+  });
+  run.ended_within(0.1);
+  run.send(SIGINT);
+  ASSERT_EQ(run.code(), 130) << "it ended before it was interrupted";
+  EXPECT_EQ(checkpoints_below(work).size(), 1u);
+  EXPECT_EQ(call("sweep " + sweep + " --store " + in_folder("store.sqlite")).code, 0);
+  EXPECT_EQ(rows("store.sqlite"), rows("whole.sqlite"));
+  EXPECT_FALSE(fs::exists(work));
+}
+
 TEST_F(SweepCli, PredictsAndCalibratesFromTheStore) {
   // A slim bucket of small grains gives a heap that has an angle.
   write("gravel.csv", "diameter_mm,passing_pct\n10,0\n25,100\n");
