@@ -15,9 +15,9 @@ namespace {
 constexpr double kBase1 = 1, kBase2 = 0.5, kBase11 = 0.5, kBase3 = 0.3;
 constexpr double kEffect1 = 1, kEffect2 = 0.6, kEffect3 = 0.4, kWithBase = 0.5, kWithOther = 0.5,
                  kWithOther2 = 0.3, kTogether = 0.5;
-constexpr double kRamp = 1, kRampWithBase = 1;  // where all ramps are done
-constexpr int kRamps = 8;                       // along an amplitude's root
-constexpr double kConstant = 1e4;  // of the scatter
+constexpr double kLine = 1, kLineWithBase = 1;  // at the end of the range
+constexpr int kKnots = 8;                       // along an amplitude's root, 0 not counted
+constexpr double kConstant = 1e4;               // of the scatter
 
 // Sizes that a group may have, over the scatter; normal prior on their logarithm.
 constexpr std::array<double, 11> kSizes{0.02, 0.1, 0.3, 0.7, 1.5, 3, 6, 15, 50, 200, 1000};
@@ -25,11 +25,10 @@ constexpr double kLogSizeStd = 2;
 constexpr int kMostSweeps = 6;
 constexpr double kTiny = 1e-12;
 
-// From 0 to 1 along one of the kRamps parts of the root of the amplitude's range; those of negative amplitudes have
-// negative numbers.
-double ramp(double amplitude, int part) {
-  const double along = std::sqrt(std::max(0.0, part > 0 ? amplitude : -amplitude));
-  return std::clamp(kRamps * along - (std::abs(part) - 1), 0.0, 1.0);
+// 1 at the knot, 0 from its neighbours on; knots of negative amplitudes are negative.
+double line(double amplitude, int knot) {
+  const double along = std::copysign(std::sqrt(std::abs(amplitude)), amplitude);
+  return std::max(0.0, 1 - std::abs(kKnots * along - knot));
 }
 
 double power(double x, int n) {
@@ -73,7 +72,7 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
   for (std::size_t e = 0; e < space.effects.size(); ++e) {
     if (!acts_[e] || !simulated[e]) continue;
     const int effect = static_cast<int>(e), polynomial = effect + 1,
-              ramps = polynomial + static_cast<int>(space.effects.size());
+              lines = polynomial + static_cast<int>(space.effects.size());
     const auto add = [&](double prior, int order, int other) -> Term& {
       return terms_.emplace_back(Term{polynomial, prior, none, effect, order, other});
     };
@@ -85,15 +84,15 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
       add(kWithOther, 1, static_cast<int>(k));
       add(kWithOther2, 2, static_cast<int>(k));
     }
-    for (int part = -kRamps; part <= kRamps; ++part) {
-      if (part == 0 || (part < 0 ? space.effects[e].lowest() >= 0 : space.effects[e].highest() <= 0))
+    for (int knot = -kKnots; knot <= kKnots; ++knot) {
+      if (knot == 0 || (knot < 0 ? space.effects[e].lowest() >= 0 : space.effects[e].highest() <= 0))
         continue;
-      const auto add_ramp = [&](double prior) -> Term& {
+      const auto add_line = [&](double prior) -> Term& {
         return terms_.emplace_back(
-            Term{ramps, prior / std::sqrt(double{kRamps}), none, effect, 0, 0, -1, part});
+            Term{lines, prior / std::sqrt(double{kKnots}), none, effect, 0, 0, -1, knot});
       };
-      add_ramp(kRamp);
-      for (std::size_t i = 0; i < p; ++i) add_ramp(kRampWithBase).base_power[i] = 1;
+      add_line(kLine);
+      for (std::size_t i = 0; i < p; ++i) add_line(kLineWithBase).base_power[i] = 1;
     }
   }
   groups_ = 1 + 2 * static_cast<int>(space.effects.size());
@@ -115,7 +114,7 @@ void ResponseSurface::values(const ModelPoint& point, std::vector<Eigen::Index>&
       const EffectAt* effect = there[static_cast<std::size_t>(term.effect)];
       if (effect == nullptr) continue;
       product =
-          term.ramp != 0 ? ramp(effect->amplitude(), term.ramp) : power(effect->amplitude(), term.power);
+          term.knot != 0 ? line(effect->amplitude(), term.knot) : power(effect->amplitude(), term.power);
       if (product == 0) continue;
       if (term.other > 0) product *= effect->at[term.other];
     }
@@ -131,10 +130,27 @@ void ResponseSurface::values(const ModelPoint& point, std::vector<Eigen::Index>&
   }
 }
 
-// The size of one group after the other is put to its best. With V the group's features times their priors and
-// Q the inverse of the runs' covariance, a change d of the size's square changes that covariance by d V V': its
-// determinant by the product of 1 + d l over the eigenvalues l of V' Q V, and what the likelihood has of y the same
-// way.
+// Coefficients are independent a priori, but for those of a broken line, which are sums of the steps from 0
+// to their knot.
+Eigen::MatrixXd ResponseSurface::root_of(const std::vector<Eigen::Index>& group) const {
+  const auto n = static_cast<Eigen::Index>(group.size());
+  Eigen::MatrixXd root = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index a = 0; a < n; ++a)
+    for (Eigen::Index b = 0; b < n; ++b) {
+      const Term &term = terms_[static_cast<std::size_t>(group[static_cast<std::size_t>(a)])],
+                 &step = terms_[static_cast<std::size_t>(group[static_cast<std::size_t>(b)])];
+      const bool on_the_way = step.knot != 0 && step.base_power == term.base_power &&
+                              (step.knot > 0) == (term.knot > 0) &&
+                              std::abs(step.knot) <= std::abs(term.knot);
+      if (a == b || on_the_way) root(a, b) = step.prior;
+    }
+  return root;
+}
+
+// The size of one group after the other is put to its best. With V the group's Group::at_runs and Q the
+// inverse of the runs' covariance, a change d of the size's square changes that covariance by d V V': its
+// determinant by the product of 1 + d l over the eigenvalues l of V' Q V, and what the likelihood has of y
+// the same way.
 ResponseSurface::Fit ResponseSurface::fit(const Features& features, const Eigen::VectorXd& y) const {
   const Eigen::Index n = features.all.rows(), k = features.all.cols();
   Eigen::VectorXd size = Eigen::VectorXd::Ones(groups_);
@@ -142,7 +158,7 @@ ResponseSurface::Fit ResponseSurface::fit(const Features& features, const Eigen:
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(n, n, kConstant * kConstant);
     covariance.diagonal().array() += 1;
     for (Eigen::Index g = 0; g < groups_; ++g) {
-      const Eigen::MatrixXd& v = features.groups[static_cast<std::size_t>(g)];
+      const Eigen::MatrixXd& v = features.groups[static_cast<std::size_t>(g)].at_runs;
       if (v.cols() > 0) covariance.selfadjointView<Eigen::Lower>().rankUpdate(v, size[g] * size[g]);
     }
     return Eigen::LLT<Eigen::MatrixXd>(covariance);
@@ -155,7 +171,7 @@ ResponseSurface::Fit ResponseSurface::fit(const Features& features, const Eigen:
     Eigen::VectorXd qy = q * y;
     double misfit = y.dot(qy);
     for (Eigen::Index g = 0; g < groups_; ++g) {
-      const Eigen::MatrixXd& v = features.groups[static_cast<std::size_t>(g)];
+      const Eigen::MatrixXd& v = features.groups[static_cast<std::size_t>(g)].at_runs;
       if (v.cols() == 0) continue;
       Eigen::MatrixXd qv = q * v;
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(v.transpose() * qv);
@@ -192,20 +208,23 @@ ResponseSurface::Fit ResponseSurface::fit(const Features& features, const Eigen:
     }
   }
   const Eigen::LLT<Eigen::MatrixXd> last = factor();
-  Eigen::VectorXd variance(k);  // of the coefficients a priori
-  for (Eigen::Index t = 0; t < k; ++t) {
-    const Term& term = terms_[static_cast<std::size_t>(t)];
-    const double deviation = term.prior * (term.group < 0 ? 1.0 : size[term.group]);
-    variance[t] = deviation * deviation;
+  Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(k, k),
+                  with_runs = Eigen::MatrixXd::Zero(n, k);  // covariances
+  for (Eigen::Index t = 0; t < k; ++t)
+    if (terms_[static_cast<std::size_t>(t)].group < 0) {
+      prior(t, t) = kConstant * kConstant;
+      with_runs.col(t) = prior(t, t) * features.all.col(t);
+    }
+  for (Eigen::Index g = 0; g < groups_; ++g) {
+    const Group& group = features.groups[static_cast<std::size_t>(g)];
+    prior(group.terms, group.terms) = size[g] * size[g] * group.root * group.root.transpose();
+    with_runs(Eigen::all, group.terms) = size[g] * size[g] * group.at_runs * group.root.transpose();
   }
-  const Eigen::MatrixXd with_runs = features.all * variance.asDiagonal();  // covariance of runs and coefficients
   const Eigen::MatrixXd gain = last.solve(with_runs).transpose();
   Fit fit;
   fit.scatter = std::max(y.dot(last.solve(y)), least) / static_cast<double>(n);
   fit.mean = gain * y;
-  fit.covariance = -gain * with_runs;
-  fit.covariance.diagonal() += variance;
-  fit.covariance *= fit.scatter;
+  fit.covariance = fit.scatter * (prior - gain * with_runs);
   fit.size = size;
   fit.residual = y - features.all * fit.mean;
   const Eigen::VectorXd leverage = features.all.cwiseProduct(gain.transpose()).rowwise().sum();
@@ -241,12 +260,12 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
     y.row(i) = run.outputs.transpose();
   }
   for (int g = 0; g < groups_; ++g) {
-    std::vector<Eigen::Index> columns;
+    Group group;
     for (Eigen::Index t = 0; t < k; ++t)
-      if (terms_[static_cast<std::size_t>(t)].group == g) columns.push_back(t);
-    features.groups.emplace_back(features.all(Eigen::all, columns));
-    for (std::size_t c = 0; c < columns.size(); ++c)
-      features.groups.back().col(static_cast<Eigen::Index>(c)) *= terms_[static_cast<std::size_t>(columns[c])].prior;
+      if (terms_[static_cast<std::size_t>(t)].group == g) group.terms.push_back(t);
+    group.root = root_of(group.terms);
+    group.at_runs = features.all(Eigen::all, group.terms) * group.root;
+    features.groups.push_back(std::move(group));
   }
   centre_ = y.colwise().mean();
   const Eigen::MatrixXd off = y.rowwise() - centre_.transpose();

@@ -4,13 +4,13 @@
 //
 // Each output is a polynomial of the coordinates with Gaussian priors on its coefficients: third order in the
 // base parameters, third order in an effect's amplitude, products of the amplitude with the base parameters,
-// with the effect's other parameters and with the amplitudes of other effects; and ramps along the amplitude,
-// alone and times each base parameter, the shorter the smaller the amplitude is: many effects rise fast and
-// have done all they can before the end of their range (a broken line whose slopes are independent a priori, as
-// of a random walk along the amplitude's root). An effect that is absent changes nothing. How large the
-// coefficients of the base, of each effect, of its ramps and of each pair are a priori, and how large the
-// scatter is, are those of the largest marginal likelihood. Outputs of one run are correlated: the polynomials
-// are those of combinations of the outputs whose scatter is not.
+// with the effect's other parameters and with the amplitudes of other effects; and a broken line along the
+// amplitude, alone and times each base parameter, whose parts are the shorter the smaller the amplitude is
+// and whose steps are independent a priori: many effects rise fast and have done all they can before the end
+// of their range. An effect that is absent changes nothing. How large the coefficients of the base, of each
+// effect, of its lines and of each pair are a priori, and how large the scatter is, are those of the largest
+// marginal likelihood. Outputs of one run are correlated: the polynomials are those of combinations of the
+// outputs whose scatter is not.
 // Source: Rasmussen & Williams, Gaussian Processes for Machine Learning (2006), 2.1 and 5.4; Higdon et al.,
 // J. Am. Stat. Assoc. 103 (2008), for several outputs.
 #include <Eigen/Dense>
@@ -52,13 +52,13 @@ class ResponseSurface {
 
  private:
   struct Term {                   // a monomial
-    int group;                    // whose size its prior has: 0: base; effects; ramps of effects; pairs; -1: none
-    double prior;                 // standard deviation over the size
+    int group;                    // whose size its prior has: 0: base; effects; their lines; pairs; -1: none
+    double prior;                 // standard deviation over the size; of a line: of a step from knot to knot
     std::vector<int> base_power;  // by base axis
     int effect = -1, power = 0;   // of the amplitude
     int other = 0;                // a further parameter of the effect, from 1; 0: none
     int second = -1;              // the other effect of a product
-    int ramp = 0;                 // not 0: in place of a power, this ramp along the amplitude
+    int knot = 0;                 // not 0: in place of a power, the broken line that is 1 at this knot alone
   };
   void make_terms(const ModelSpace& space, const std::vector<DesignRun>& runs);
   // The terms that do not vanish at a point, and their values.
@@ -73,11 +73,17 @@ class ResponseSurface {
     Eigen::VectorXd residual;    // by run
     double leave_one_out;
   };
-  // The terms at the runs.
-  struct Features {
-    Eigen::MatrixXd all;                  // a row a run, a column a term
-    std::vector<Eigen::MatrixXd> groups;  // of each group its columns times their priors
+  // The terms at the runs, and what is known of their coefficients before.
+  struct Group {
+    std::vector<Eigen::Index> terms;
+    Eigen::MatrixXd root;     // R: a priori their covariance over the square of the size is R R'
+    Eigen::MatrixXd at_runs;  // the terms at the runs times R
   };
+  struct Features {
+    Eigen::MatrixXd all;  // a row a run, a column a term
+    std::vector<Group> groups;
+  };
+  Eigen::MatrixXd root_of(const std::vector<Eigen::Index>& group) const;
   Fit fit(const Features& features, const Eigen::VectorXd& y) const;
   double pair_variance(const ModelPoint& point, const Fit& fit) const;
 
