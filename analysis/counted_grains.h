@@ -13,8 +13,8 @@ struct CountedGrains {
 };
 
 /// What is counted of these grains: first the share that is seen, by the true diameter; then the biased
-/// diameter; then its spread. The masses add up to those of the grains: a part of a pile is weighed, or its
-/// volume surveyed, and its grading is that of what is seen.
+/// diameter. Its spread is the passing curve's. The masses add up to those of the grains: a part of a pile is
+/// weighed, or its volume surveyed, and its grading is that of what is seen.
 CountedGrains count_grains(const std::vector<const Grain*>& grains, const Measurement& measured);
 
 }  // namespace scree

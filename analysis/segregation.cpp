@@ -21,7 +21,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 std::optional<PassingCurve> curve_of(const std::vector<const Grain*>& grains, const Measurement& measured) {
   if (grains.empty()) return std::nullopt;
   CountedGrains counted = count_grains(grains, measured);
-  return PassingCurve(std::move(counted.diameters), counted.masses);
+  return PassingCurve(std::move(counted.diameters), counted.masses, measured.blur);
 }
 
 /// Preferred numbers R10 (ISO 3) from just below the smallest to just above the largest diameter; 1 m is

@@ -95,6 +95,32 @@ TEST(ImageBlur, WidensTheCurveAndLowersChi) {
   }
 }
 
+// What hardly blurs, biases or hides changes hardly anything, of few grains too: each effect on measurement
+// goes over into none.
+TEST(Measurement, IsContinuousWhereAnEffectBegins) {
+  std::vector<Grain> pile;
+  for (const Grain& grain : lognormal_rock(kD50, 0.6))
+    if (grain.id % 160 == 0) pile.push_back(grain);
+  for (std::size_t k = 0; k < pile.size(); ++k)
+    pile[k].position.z() = 2 * (1 - (static_cast<double>(k) + 0.5) / static_cast<double>(pile.size()));
+  const Section none = whole(pile, pile, {});
+  for (const auto& [name, values] :
+       std::vector<std::pair<std::string, std::vector<double>>>{{"image_blur", {1e-6}},
+                                                                {"detection_limit", {1e-6, 6}},
+                                                                {"image_shape_bias", {1e-6}},
+                                                                {"section_borders", {1e-6}}}) {
+    const Section seen = whole(pile, pile, measured_with(name, values));
+    for (const auto& [was, is] : {std::pair{none.d10, seen.d10},
+                                  {none.d50, seen.d50},
+                                  {none.d80, seen.d80},
+                                  {none.d90, seen.d90},
+                                  {none.d95, seen.d95},
+                                  {none.mass, seen.mass}})
+      EXPECT_NEAR(is, was, 1e-4 * was) << name;
+    EXPECT_NEAR(seen.chi, none.chi, 1e-4) << name;
+  }
+}
+
 // d (d / D50)^b: relative diameters are raised to 1 + b, chi stays.
 TEST(ImageShapeBias, RelativeDiametersAreRaisedToAPower) {
   const double b = 0.3, k = 1.4;
