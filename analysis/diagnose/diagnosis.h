@@ -2,6 +2,7 @@
 // What measurements say of a model: where it disagrees, whether its parameters can mend that, which effect
 // can, and what cannot be told.
 #include <Eigen/Dense>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -103,11 +104,13 @@ class LearntModel {
  public:
   /// Throws std::invalid_argument, see ResponseSurface.
   LearntModel(const ModelSpace& space, const std::vector<std::string>& experiments, const DesignRuns& runs);
-  /// Of all values, in their order.
+  /// Of all values, in their order; and what the effects of a point change there.
   SurfacePrediction at(const ModelPoint& point) const;
+  SurfacePrediction change_at(const ModelPoint& point) const;
   std::vector<const ResponseSurface*> surfaces() const;
 
  private:
+  SurfacePrediction together(const std::function<SurfacePrediction(const ResponseSurface&)>& of_one) const;
   std::vector<ResponseSurface> surfaces_;
 };
 
@@ -128,7 +131,8 @@ Gap simulated_gap(const Diagnosis& diagnosis, const LearntModel& model, const Ei
                   int fitted);
 
 /// Root mean square change of the measured numbers by the effects at a point, in standard uncertainties, as
-/// far as other base parameters cannot make up for it.
+/// far as other base parameters cannot make up for it. What the scatter of the runs adds to the square on
+/// average is taken off: a surface learnt from few runs is not flat where an effect does nothing.
 double detectability(const ModelSpace& space, const LearntModel& model, const Eigen::MatrixXd& covariance,
                      const ModelPoint& point);
 

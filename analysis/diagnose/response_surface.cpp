@@ -320,10 +320,17 @@ double ResponseSurface::pair_variance(const ModelPoint& point, const Fit& fit) c
   return variance;
 }
 
-SurfacePrediction ResponseSurface::at(const ModelPoint& point) const {
+SurfacePrediction ResponseSurface::sum_of(const ModelPoint& point, bool effects_alone) const {
   std::vector<Eigen::Index> which;
   std::vector<double> value;
   values(point, which, value);
+  if (effects_alone) {  // terms of the base come first
+    const auto base = std::count_if(which.begin(), which.end(), [&](Eigen::Index t) {
+      return terms_[static_cast<std::size_t>(t)].effect < 0;
+    });
+    which.erase(which.begin(), which.begin() + base);
+    value.erase(value.begin(), value.begin() + base);
+  }
   const Eigen::Index p = outputs();
   const std::size_t m = which.size();
   Eigen::VectorXd mean(p), variance(p);
@@ -339,7 +346,17 @@ SurfacePrediction ResponseSurface::at(const ModelPoint& point) const {
     mean[j] = sum;
     variance[j] = square + pair_variance(point, fit);
   }
-  return {centre_ + to_outputs_ * mean, to_outputs_ * variance.asDiagonal() * to_outputs_.transpose()};
+  return {to_outputs_ * mean, to_outputs_ * variance.asDiagonal() * to_outputs_.transpose()};
+}
+
+SurfacePrediction ResponseSurface::at(const ModelPoint& point) const {
+  SurfacePrediction all = sum_of(point, false);
+  all.mean += centre_;
+  return all;
+}
+
+SurfacePrediction ResponseSurface::change_at(const ModelPoint& point) const {
+  return sum_of(point, true);
 }
 
 }  // namespace scree

@@ -40,6 +40,8 @@ class ResponseSurface {
   ResponseSurface(const ModelSpace& space, const std::string& experiment, const std::vector<DesignRun>& runs);
 
   SurfacePrediction at(const ModelPoint& point) const;
+  /// What the effects of a point change there.
+  SurfacePrediction change_at(const ModelPoint& point) const;
   /// Covariance of one run about the mean: between seeds.
   const Eigen::MatrixXd& scatter() const { return scatter_; }
   Eigen::Index outputs() const { return scatter_.rows(); }
@@ -86,6 +88,7 @@ class ResponseSurface {
   Eigen::MatrixXd root_of(const std::vector<Eigen::Index>& group) const;
   Fit fit(const Features& features, const Eigen::VectorXd& y) const;
   double pair_variance(const ModelPoint& point, const Fit& fit) const;
+  SurfacePrediction sum_of(const ModelPoint& point, bool effects_alone) const;
 
   std::vector<bool> acts_;                        // by effect of the space
   std::vector<std::pair<int, int>> known_pairs_;  // of effects that were simulated together
