@@ -4,6 +4,7 @@
 #include <numeric>
 
 namespace scree {
+
 CountedGrains count_grains(const std::vector<const Grain*>& grains, const Measurement& measured) {
   CountedGrains counted;
   counted.diameters.reserve(grains.size());

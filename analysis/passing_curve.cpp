@@ -44,7 +44,8 @@ PassingCurve::Steps PassingCurve::steps_of(const std::vector<double>& diameters,
   return steps;
 }
 
-PassingCurve::PassingCurve(std::vector<double> diameters, const std::vector<double>& masses, double blur)
+PassingCurve::PassingCurve(const std::vector<double>& diameters, const std::vector<double>& masses,
+                           double blur)
     : blur_(blur) {
   if (diameters.empty()) throw std::invalid_argument("a passing curve needs at least one grain");
   if (diameters.size() != masses.size())
@@ -52,6 +53,7 @@ PassingCurve::PassingCurve(std::vector<double> diameters, const std::vector<doub
   for (std::size_t i = 0; i < masses.size(); ++i)
     if (!(diameters[i] > 0 && masses[i] > 0))
       throw std::invalid_argument("a passing curve needs diameters and masses above 0");
+  if (!(blur >= 0)) throw std::invalid_argument("the blur of a passing curve must be at least 0");
   sharp_ = steps_of(diameters, masses);
   if (blur_ == 0) return;
   std::vector<double> parts, shares;
@@ -73,7 +75,7 @@ double PassingCurve::passing(double diameter) const {
 
 double PassingCurve::diameter(double passing) const {
   assert(passing >= 0 && passing <= 1);
-  const auto& [diameters, cumulative] = sharp_;
+  const std::vector<double>&diameters = sharp_.diameters, &cumulative = sharp_.cumulative;
   const double wanted = passing * sharp_.mass();
   if (blur_ > 0) {
     // Smeared is the curve that is linear in log d between grains, not its steps: the more grains are split,

@@ -20,8 +20,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::optional<PassingCurve> curve_of(const std::vector<const Grain*>& grains, const Measurement& measured) {
   if (grains.empty()) return std::nullopt;
-  CountedGrains counted = count_grains(grains, measured);
-  return PassingCurve(std::move(counted.diameters), counted.masses, measured.blur);
+  const CountedGrains counted = count_grains(grains, measured);
+  return PassingCurve(counted.diameters, counted.masses, measured.blur);
 }
 
 /// Preferred numbers R10 (ISO 3) from just below the smallest to just above the largest diameter; 1 m is

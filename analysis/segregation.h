@@ -11,10 +11,11 @@ namespace scree {
 /// Passing curve of a set of grains, by mass; exact (one step a grain), or as an image shows it.
 class PassingCurve {
  public:
-  /// Masses (kg) and diameters (m) of the same length; throws std::invalid_argument when empty. With `blur`
-  /// the curve over ln d is smeared by a normal distribution of this deviation, and goes over into the exact
-  /// one as that becomes 0.
-  PassingCurve(std::vector<double> diameters, const std::vector<double>& masses, double blur = 0);
+  /// Masses (kg) and diameters (m) of the same length; throws std::invalid_argument when empty or when blur
+  /// is below 0. With `blur` each grain counts over a normal distribution of ln d of this deviation;
+  /// diameters are those of the curve through the grains smeared likewise, which goes over into the exact one
+  /// as the blur becomes 0.
+  PassingCurve(const std::vector<double>& diameters, const std::vector<double>& masses, double blur = 0);
   /// Passing share (0 to 1) at a diameter (m).
   double passing(double diameter) const;
   /// Diameter (m) at a passing share; linear in log10(d) between grains.

@@ -18,8 +18,7 @@ double share_reaching_toe(const std::vector<Grain>& pile, double crest_height,
     diameters.push_back(grain.diameter);
     masses.push_back(grain.mass);
   }
-  return share_reaching_toe_above(pile, crest_height,
-                                  PassingCurve(std::move(diameters), masses).diameter(quantile));
+  return share_reaching_toe_above(pile, crest_height, PassingCurve(diameters, masses).diameter(quantile));
 }
 
 double share_reaching_toe_above(const std::vector<Grain>& pile, double crest_height, double diameter) {

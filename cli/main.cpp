@@ -16,9 +16,11 @@ volatile std::sig_atomic_t interrupted = 0;
 
 namespace {
 
-void on_interrupt(int) {
-  if (interrupted) _exit(kInterrupted);  // a second Ctrl-C does not wait
-  interrupted = 1;
+void on_interrupt(int signal) {
+  // A second Ctrl-C does not wait. One from a sweep to its runs, after the end of all (SIGTERM), is the
+  // first.
+  if (interrupted == signal) _exit(kInterrupted);
+  interrupted = signal;
 }
 
 constexpr const char* kExamples = R"(

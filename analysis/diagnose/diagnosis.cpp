@@ -154,7 +154,7 @@ Judgement judge(const ModelSpace& space, const Likelihood& likelihood, const Hyp
 // can make up for (to first order).
 struct Signature {
   Eigen::VectorXd change;
-  double unsure = 0;  // mean square of it that is scatter of the runs
+  double unsure = 0;  // mean square of it that is not known
   double size() const {
     const auto n = static_cast<double>(change.size());
     return n > 0 ? std::sqrt(std::max(change.squaredNorm() / n - unsure, 0.0)) : 0.0;

@@ -131,8 +131,8 @@ Gap simulated_gap(const Diagnosis& diagnosis, const LearntModel& model, const Ei
                   int fitted);
 
 /// Root mean square change of the measured numbers by the effects at a point, in standard uncertainties, as
-/// far as other base parameters cannot make up for it. What the scatter of the runs adds to the square on
-/// average is taken off: a surface learnt from few runs is not flat where an effect does nothing.
+/// far as other base parameters cannot make up for it. What is not known of the surface is taken off the
+/// square: learnt from few runs it is not flat where an effect does nothing.
 double detectability(const ModelSpace& space, const LearntModel& model, const Eigen::MatrixXd& covariance,
                      const ModelPoint& point);
 

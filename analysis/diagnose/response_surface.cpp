@@ -23,7 +23,7 @@ constexpr double kConstant = 1e4;               // of the scatter
 constexpr std::array<double, 11> kSizes{0.02, 0.1, 0.3, 0.7, 1.5, 3, 6, 15, 50, 200, 1000};
 constexpr double kLogSizeStd = 2;
 constexpr int kMostSweeps = 6;
-constexpr double kTiny = 1e-12;
+constexpr double kTiny = 1e-12;  // against rounding: of what is above 0 by its nature
 
 // 1 at the knot, 0 from its neighbours on; knots of negative amplitudes are negative.
 double line(double amplitude, int knot) {
@@ -175,19 +175,24 @@ ResponseSurface::Fit ResponseSurface::fit(const Features& features, const Eigen:
       if (v.cols() == 0) continue;
       Eigen::MatrixXd qv = q * v;
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(v.transpose() * qv);
-      const Eigen::ArrayXd values = eigen.eigenvalues().cwiseMax(0.0),
+      const Eigen::ArrayXd roots = eigen.eigenvalues().cwiseMax(0.0),
                            along = (eigen.eigenvectors().transpose() * (v.transpose() * qy)).array();
       const auto shrunk = [&](double change) -> Eigen::ArrayXd {
-        return change / (1 + change * values).max(kTiny);
+        return change / (1 + change * roots).max(kTiny);
       };
       const auto misfit_at = [&](double change) {
         return std::max(misfit - (shrunk(change) * along.square()).sum(), least);
       };
       const double before = size[g];
+      double usual = 0;  // a priori: 1; of a pair the mean of its effects
+      if (const auto pair = g - 1 - 2 * static_cast<Eigen::Index>(acts_.size()); pair >= 0) {
+        const auto& [a, b] = known_pairs_[static_cast<std::size_t>(pair)];
+        usual = 0.5 * std::log(size_of(size, a) * size_of(size, b));
+      }
       // Logarithm of the marginal likelihood with the scatter's variance at its best, times the size's prior.
       const auto log_density = [&](double here) {
-        const double change = here * here - before * before, z = std::log(here) / kLogSizeStd;
-        return -0.5 * ((1 + change * values).max(kTiny).log().sum() +
+        const double change = here * here - before * before, z = (std::log(here) - usual) / kLogSizeStd;
+        return -0.5 * ((1 + change * roots).max(kTiny).log().sum() +
                        static_cast<double>(n) * std::log(misfit_at(change)) + z * z);
       };
       double best = log_density(before), chosen = before;
@@ -306,6 +311,12 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
   scatter_ = to_outputs_ * variance.asDiagonal() * to_outputs_.transpose();
 }
 
+// The larger of the sizes of an effect's polynomial and of its lines: either may do all.
+double ResponseSurface::size_of(const Eigen::VectorXd& size, int effect) const {
+  const auto effects = static_cast<Eigen::Index>(acts_.size());
+  return std::max(size[effect + 1], size[effect + 1 + effects]);
+}
+
 // Of products of effects that were never simulated together.
 double ResponseSurface::pair_variance(const ModelPoint& point, const Fit& fit) const {
   double variance = 0;
@@ -315,7 +326,8 @@ double ResponseSurface::pair_variance(const ModelPoint& point, const Fit& fit) c
       const std::pair<int, int> pair(static_cast<int>(a.effect), static_cast<int>(b.effect));
       if (std::find(known_pairs_.begin(), known_pairs_.end(), pair) != known_pairs_.end()) continue;
       const double product = kTogether * a.amplitude() * b.amplitude();
-      variance += fit.scatter * product * product * fit.size[pair.first + 1] * fit.size[pair.second + 1];
+      variance +=
+          fit.scatter * product * product * size_of(fit.size, pair.first) * size_of(fit.size, pair.second);
     }
   return variance;
 }

@@ -5,14 +5,13 @@
 // Each output is a polynomial of the coordinates with Gaussian priors on its coefficients: third order in the
 // base parameters, third order in an effect's amplitude, products of the amplitude with the base parameters,
 // with the effect's other parameters and with the amplitudes of other effects; and a broken line along the
-// amplitude, alone and times each base parameter, whose parts are the shorter the smaller the amplitude is
-// and whose steps are independent a priori: many effects rise fast and have done all they can before the end
-// of their range. An effect that is absent changes nothing. How large the coefficients of the base, of each
-// effect, of its lines and of each pair are a priori, and how large the scatter is, are those of the largest
-// marginal likelihood. Outputs of one run are correlated: the polynomials are those of combinations of the
-// outputs whose scatter is not.
-// Source: Rasmussen & Williams, Gaussian Processes for Machine Learning (2006), 2.1 and 5.4; Higdon et al.,
-// J. Am. Stat. Assoc. 103 (2008), for several outputs.
+// root of the amplitude, alone and times each base parameter, whose steps from knot to knot are independent a
+// priori (a random walk): many effects rise fast and have done all they can before the end of their range. An
+// effect that is absent changes nothing. How large the coefficients of the base, of each effect, of its lines
+// and of each pair are a priori, and how large the scatter is, are those of the largest marginal likelihood.
+// Outputs of one run are correlated: the polynomials are those of combinations of the outputs whose scatter
+// is not. Source: Rasmussen & Williams, Gaussian Processes for Machine Learning (2006), 2.1 and 5.4; Higdon
+// et al., J. Am. Stat. Assoc. 103 (2008), for several outputs.
 #include <Eigen/Dense>
 #include <string>
 #include <vector>
@@ -87,6 +86,7 @@ class ResponseSurface {
   };
   Eigen::MatrixXd root_of(const std::vector<Eigen::Index>& group) const;
   Fit fit(const Features& features, const Eigen::VectorXd& y) const;
+  double size_of(const Eigen::VectorXd& size, int effect) const;
   double pair_variance(const ModelPoint& point, const Fit& fit) const;
   SurfacePrediction sum_of(const ModelPoint& point, bool effects_alone) const;
 

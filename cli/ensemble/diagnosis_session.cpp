@@ -38,17 +38,22 @@ Eigen::VectorXd coordinates(const std::vector<double>& unit, std::size_t first, 
   return x;
 }
 
-// Amplitudes over the range, none of them 0, the closer to each other the smaller: much of what an effect does it
-// does at the low end of its range (a rock is sticky or not), and there data can tell how much of it there is.
-double amplitude(const CandidateEffect& effect, int k, int count) {
+}  // namespace
+
+std::vector<double> amplitudes_of(const CandidateEffect& effect, int count) {
   const double low = effect.lowest(), high = effect.highest();
-  const auto spread = [](double share) { return share * std::abs(share); };
-  if (low >= 0) return high * spread(static_cast<double>(k + 1) / count);
-  if (high <= 0) return low * spread(static_cast<double>(k + 1) / count);
-  const double share = 2 * (k + 0.5) / count - 1;  // -1 to 1
-  const double here = spread(std::abs(share) > 1e-6 ? share : 0.5 / count);
-  return here < 0 ? -here * low : here * high;
+  const bool both = low < 0 && high > 0;
+  std::vector<double> all;
+  for (int k = 0; k < count; ++k) {
+    const bool down = high <= 0 || (both && k % 2 == 1);
+    const int of = both ? (down ? count / 2 : (count + 1) / 2) : count;
+    const double share = static_cast<double>(both ? k / 2 + 1 : k + 1) / of;
+    all.push_back(share * share * (down ? low : high));
+  }
+  return all;
 }
+
+namespace {
 
 bool moved(const ModelPoint& a, const ModelPoint& b) {
   if (a.effects.size() != b.effects.size()) return true;
@@ -96,11 +101,12 @@ std::vector<PlannedRun> design_of(const ModelSpace& space, const SimulationCount
     const std::size_t others = effect.axes.size() - 1;
     const std::uint64_t own = hash_of(effect.name);
     seed = kEffectSeeds + own % 100 * kSeedsOfOneEffect;
+    const std::vector<double> amplitudes = amplitudes_of(effect, counts.effect);
     auto points = latin_hypercube(counts.effect, static_cast<int>(p + others), own);
     for (int k = 0; k < counts.effect; ++k) {
       const auto& unit = points[static_cast<std::size_t>(k)];
       Eigen::VectorXd at(static_cast<Eigen::Index>(1 + others));
-      at << amplitude(effect, k, counts.effect), coordinates(unit, p, others);
+      at << amplitudes[static_cast<std::size_t>(k)], coordinates(unit, p, others);
       runs.push_back({{coordinates(unit, 0, p), {{e, at}}}, ++seed});
     }
   }

@@ -39,7 +39,8 @@ class Executor {
   virtual std::optional<EndedJob> wait(double patience) = 0;
   /// Share done (0 to 1) of each run under way.
   virtual std::vector<double> shares() const = 0;
-  /// Ends all runs under way, which leave a checkpoint if they make any, and forgets them.
+  /// Ends all runs under way, which leave a checkpoint if they make any and can within half a minute, and
+  /// forgets them.
   virtual void cancel() = 0;
 };
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kBadInput = 2, kInterrupted = 130;       // exit status of a run
 constexpr auto kLook = std::chrono::milliseconds(20);  // between looks at the processes
-constexpr double kLastCheckpoint = 30;                 // s that interrupted runs may take for it
+constexpr double kToCheckpoint = 30;                   // s that interrupted runs have for their last
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -94,6 +94,7 @@ void LocalProcesses::start(const Job& job) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(1);  // it died before the line above
     setpgid(0, 0);                      // Ctrl-C goes to the sweep, which ends its runs itself
+    signal(SIGINT, SIG_DFL);            // not ignored, as it is in the background of a script
     const int null = open("/dev/null", O_RDONLY),
               file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
     dup2(null, STDIN_FILENO);
@@ -142,7 +143,7 @@ std::vector<double> LocalProcesses::shares() const {
 
 void LocalProcesses::cancel() {
   for (const Process& process : processes_) kill(process.pid, checkpoint_minutes_ > 0 ? SIGINT : SIGKILL);
-  const double until = now() + kLastCheckpoint;
+  const double until = now() + kToCheckpoint;
   while (!processes_.empty()) {
     std::erase_if(processes_, [](const Process& process) {
       const pid_t ended = waitpid(process.pid, nullptr, WNOHANG);

@@ -9,7 +9,8 @@ Effect image_blur() {
       .doc = "Image analysis splits large grains, merges small ones, and sees each from one side.",
       .equation =
           "The mass of a grain is spread over diameters with a normal distribution of ln d about its own, "
-          "standard deviation width. Mean log d stays; curves become wider, and with the spread of the rock "
+          "standard deviation width. Mean log d stays; curves, and the diameters read from them, become "
+          "wider, and with the spread of the rock "
           "as dumped, which is measured likewise, chi becomes smaller.",
       .source =
           "Maerz & Zhou, Fragblast 2 (1998): fusion and disintegration of grains in images; Sanchidrian et "

@@ -129,6 +129,41 @@ TEST_F(DiagnosisOf, TheMapNamesWhatDisagrees) {
                                                testing::Field(&Disagreement::significant, true))));
 }
 
+// d^2 = |(1 - P) L^-1 change|^2 / n - tr(what is not known of that) / n: of an effect that does nothing it is
+// 0 on average, however few runs there are, and of one that does something what the formula of the world
+// gives.
+TEST(Detectability, DoesNotTakeScatterForAnEffect) {
+  const SyntheticWorld world;
+  double nothing = 0, something = 0;
+  constexpr int designs = 12;
+  for (std::uint64_t seed = 1; seed <= designs; ++seed) {
+    DesignRuns runs = world.design(seed);
+    Random random(seed, 3, RandomPurpose::design);
+    for (int x = 0; x < 2; ++x)
+      for (DesignRun& run : runs[static_cast<std::size_t>(x)])
+        if (!run.at.effects.empty() && run.at.effects[0].effect == 0)
+          run.outputs = world.run(x, {run.at.base, {}}, random);
+    const LearntModel model(world.space, world.experiments, runs);
+    const Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(11, 11) / 20;  // of 20 repeats
+    nothing += detectability(world.space, model, covariance, SyntheticWorld::point(0, 0, {{0, 0.3}}));
+    something += detectability(world.space, model, covariance, SyntheticWorld::point(0, 0, {{1, 0.3}}));
+  }
+  // The change of the numbers by the second effect, less its projection on the slopes of the base parameters.
+  Eigen::VectorXd change(11);
+  Eigen::MatrixXd slopes(11, 2);
+  for (int x = 0, k = 0; x < 2; ++x)
+    for (int c = 0; c < SyntheticWorld::numbers(x); ++c, ++k) {
+      const auto mean = [&](const ModelPoint& at) { return world.mean(x, c, at); };
+      const double here = mean(SyntheticWorld::point(0, 0));
+      change[k] = mean(SyntheticWorld::point(0, 0, {{1, 0.3}})) - here;
+      slopes(k, 0) = mean(SyntheticWorld::point(1, 0)) - here;
+      slopes(k, 1) = mean(SyntheticWorld::point(0, 1)) - here;
+    }
+  change -= slopes * slopes.colPivHouseholderQr().solve(change);
+  const double truth = change.norm() / std::sqrt(11) * std::sqrt(20);
+  EXPECT_NEAR(something / designs / truth, 1, 0.15);
+}
+
 TEST(Evidence, OfAGaussianIsItsIntegral) {
   // exp(-x'x / (2 s^2)) over [-1, 1]^3: (s sqrt(2 pi) erf(1 / (s sqrt 2)))^3, times the uniform prior 1/8.
   for (const double s : {0.5, 0.05, 0.005}) {
@@ -175,8 +210,8 @@ TEST(ResponseSurface, LearnsScatterAndForetellsWithinItsUncertainty) {
   EXPECT_GT(sum / count, 0.2);
 }
 
-// An effect that has done most of what it can at a tenth of its range, more so where the base parameter is large;
-// nearly nothing on the other side. Amplitudes are spread as the design does it.
+// An effect that has done most of what it can at a tenth of its range, more so where the base parameter is
+// large; nearly nothing on the other side. Amplitudes are spread as a design does it.
 TEST(ResponseSurface, FollowsAnEffectThatSaturates) {
   ModelSpace space;
   space.base = {{"material.mu", 0, -1, 1}};
