@@ -81,6 +81,27 @@ const Judgement* best_effect(const Diagnosis& d) {
   return nullptr;
 }
 
+// The first of those that are named.
+const Judgement* named_first(const Diagnosis& d) {
+  return d.verdict.kind == DiagnosisVerdict::Kind::effect || d.verdict.kind == DiagnosisVerdict::Kind::group
+             ? &d.judgements[d.verdict.named.front()]
+             : nullptr;
+}
+
+// The leading effect or pair, its rivals, and what would be named, which may be another: a hypothesis of
+// which little was simulated explains almost anything.
+std::vector<const Judgement*> worth_simulating(const Diagnosis& d) {
+  std::vector<const Judgement*> all;
+  for (const Judgement& j : d.judgements)
+    if (!j.hypothesis.effects.empty() && all.size() <= kMostRivals &&
+        (all.empty() || j.probability * kRivalBy > all.front()->probability))
+      all.push_back(&j);
+  if (const Judgement* named = named_first(d);
+      named != nullptr && std::find(all.begin(), all.end(), named) == all.end())
+    all.push_back(named);
+  return all;
+}
+
 int fitted(const ModelSpace& space, const Judgement& j) {
   int count = static_cast<int>(space.base.size());
   for (const std::size_t e : j.hypothesis.effects) count += static_cast<int>(space.effects[e].axes.size());
@@ -214,9 +235,9 @@ std::vector<ExperimentRuns> DiagnosisSession::in_every_experiment(
 }
 
 int DiagnosisSession::most_further() const {
-  // A round simulates the calibrated model and the leading effect; the first its rivals, too; the end what is
-  // named.
-  const int points = 2 * kMostRounds + static_cast<int>(kMostRivals) + 1;
+  // A round simulates the calibrated model, the leading effect, its rivals, and what would be named; the end
+  // what is named.
+  const int points = (3 + static_cast<int>(kMostRivals)) * kMostRounds + 1;
   return static_cast<int>(design_.size()) *
          (points * model_.simulations.check + kExplored * model_.simulations.effect);
 }
@@ -374,31 +395,28 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   LearntModel model = learn();
   Diagnosis d = diagnose(space_, data_.measured, model);
   const int p = static_cast<int>(space_.base.size());
-  std::optional<SimulatedModel> calibrated, augmented;
+  std::map<std::vector<std::size_t>, SimulatedModel> shown;  // the last of each hypothesis, by its effects
+  const auto is_shown = [&](const Judgement& j) {
+    const auto there = shown.find(j.hypothesis.effects);
+    return there != shown.end() && !moved(there->second.at, j.best);
+  };
   outcome.settled = d.verdict.kind == DiagnosisVerdict::Kind::nothing;
   for (int round = 0; round < kMostRounds && !outcome.settled; ++round) {
     ++outcome.rounds;
     bool fresh = false;
     // Whether there was anything to simulate.
-    const auto show = [&](const ModelPoint& point, std::optional<SimulatedModel>& shown) {
-      if (shown && !moved(shown->at, point)) return false;
-      shown = simulate(point, run, outcome);
+    const auto show = [&](const Judgement& j) {
+      if (is_shown(j)) return false;
+      shown.insert_or_assign(j.hypothesis.effects, simulate(j.best, run, outcome));
       fresh = true;
       return true;
     };
-    show(d.calibration.best, calibrated);
-    if (d.calibration.gap.p <= kFitsAbove)
-      if (const Judgement* lead = best_effect(d)) {
-        if (show(lead->best, augmented) && round < kExplored) explore(*lead, run, outcome);
-        std::size_t rivals = 0;
-        for (const Judgement& j : d.judgements)
-          if (round == 0 && &j != lead && !j.hypothesis.effects.empty() && rivals < kMostRivals &&
-              j.probability * kRivalBy > lead->probability) {
-            ++rivals;
-            simulate(j.best, run, outcome);
-            fresh = true;
-          }
-      }
+    show(d.calibration);
+    if (d.calibration.gap.p <= kFitsAbove) {
+      const std::vector<const Judgement*> worth = worth_simulating(d);
+      for (const Judgement* j : worth)
+        if (show(*j) && j == worth.front() && round < kExplored) explore(*j, run, outcome);
+    }
     if (!fresh) {
       outcome.settled = true;
       break;
@@ -407,10 +425,10 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     Diagnosis again = diagnose(space_, data_.measured, model);
     const bool unchanged = same(d.verdict, again.verdict, d, again);
     d = std::move(again);
-    const Judgement* lead = best_effect(d);
-    const bool still = !moved(calibrated->at, d.calibration.best) &&
-                       (!augmented || lead == nullptr || !moved(augmented->at, lead->best));
-    outcome.settled = unchanged && still;
+    outcome.settled = unchanged && is_shown(d.calibration);
+    for (const Judgement* j : {best_effect(d), named_first(d)})
+      if (j != nullptr && d.calibration.gap.p <= kFitsAbove)
+        outcome.settled = outcome.settled && is_shown(*j);
   }
   outcome.diagnosis = std::move(d);
   const Diagnosis& found = outcome.diagnosis;
@@ -437,18 +455,18 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   }
   outcome.nominal.gap =
       simulated_gap(found, model, outcome.nominal.mean, std::max(outcome.nominal.runs, 1), 0);
-  if (calibrated) {
-    calibrated->gap = simulated_gap(found, model, calibrated->mean, calibrated->runs, p);
-    outcome.calibrated = calibrated;
-  }
-  if (found.verdict.kind == DiagnosisVerdict::Kind::effect ||
-      found.verdict.kind == DiagnosisVerdict::Kind::group) {
-    const Judgement& named = found.judgements[found.verdict.named.front()];
-    if (!augmented || moved(augmented->at, named.best)) augmented = simulate(named.best, run, outcome);
-    augmented->gap = simulated_gap(found, model, augmented->mean, augmented->runs, fitted(space_, named));
-    outcome.augmented = augmented;
+  const auto with_gap = [&](SimulatedModel simulated, int parameters) {
+    simulated.gap = simulated_gap(found, model, simulated.mean, simulated.runs, parameters);
+    return simulated;
+  };
+  if (const auto calibrated = shown.find({}); calibrated != shown.end())
+    outcome.calibrated = with_gap(calibrated->second, p);
+  if (const Judgement* named = named_first(found)) {
+    outcome.augmented =
+        with_gap(is_shown(*named) ? shown.at(named->hypothesis.effects) : simulate(named->best, run, outcome),
+                 fitted(space_, *named));
     outcome.held_out_calibrated = held_out(space_, found, model, {{}, false, 0});
-    outcome.held_out_augmented = held_out(space_, found, model, named.hypothesis);
+    outcome.held_out_augmented = held_out(space_, found, model, named->hypothesis);
   }
   if (found.verdict.kind == DiagnosisVerdict::Kind::group) outcome.next = tell_apart(outcome);
   return outcome;
