@@ -65,6 +65,11 @@ bool moved(const ModelPoint& a, const ModelPoint& b) {
   return most > kMoved;
 }
 
+// Of a model, that gave what was measured.
+struct TooFewRuns : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 bool same(const DiagnosisVerdict& a, const DiagnosisVerdict& b, const Diagnosis& of_a,
           const Diagnosis& of_b) {
   if (a.kind != b.kind || a.named.size() != b.named.size()) return false;
@@ -304,10 +309,9 @@ SimulatedModel DiagnosisSession::simulate(const ModelPoint& point, const RunThro
     simulated.runs = std::min(simulated.runs, static_cast<int>(count));
     const Eigen::Index width = static_cast<Eigen::Index>(data_.measured.of(e).size());
     if (count < 2)
-      throw std::runtime_error(
-          fmt::format("{}: {} of {} simulations of the fitted model give the numbers measured{}",
-                      data_.experiments[e].name, count, model_.simulations.check,
-                      failure_[e].empty() ? "" : "; the last that failed: " + failure_[e]));
+      throw TooFewRuns(fmt::format("{}: {} of {} simulations of the fitted model give the numbers measured{}",
+                                   data_.experiments[e].name, count, model_.simulations.check,
+                                   failure_[e].empty() ? "" : "; the last that failed: " + failure_[e]));
     Eigen::MatrixXd y(count, width);
     for (Eigen::Index k = 0; k < count; ++k)
       y.row(k) = learnt_[e][before[e] + static_cast<std::size_t>(k)].outputs.transpose();
@@ -396,7 +400,9 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   Diagnosis d = diagnose(space_, data_.measured, model);
   const int p = static_cast<int>(space_.base.size());
   std::map<std::vector<std::size_t>, SimulatedModel> shown;  // the last of each hypothesis, by its effects
+  std::map<std::vector<std::size_t>, TooFewRuns> not_to_be_shown;
   const auto is_shown = [&](const Judgement& j) {
+    if (not_to_be_shown.contains(j.hypothesis.effects)) return true;
     const auto there = shown.find(j.hypothesis.effects);
     return there != shown.end() && !moved(there->second.at, j.best);
   };
@@ -407,9 +413,19 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     // Whether there was anything to simulate.
     const auto show = [&](const Judgement& j) {
       if (is_shown(j)) return false;
-      shown.insert_or_assign(j.hypothesis.effects, simulate(j.best, run, outcome));
       fresh = true;
-      return true;
+      try {
+        shown.insert_or_assign(j.hypothesis.effects, simulate(j.best, run, outcome));
+        return true;
+      } catch (const TooFewRuns& error) {
+        if (j.hypothesis.effects.empty()) throw;
+        not_to_be_shown.emplace(j.hypothesis.effects, error);
+        std::vector<std::string> effects;
+        for (const std::size_t e : j.hypothesis.effects) effects.push_back(space_.effects[e].name);
+        outcome.notes.push_back(fmt::format("{} could not be tried by full simulations: {}",
+                                            fmt::join(effects, " and "), error.what()));
+        return false;
+      }
     };
     show(d.calibration);
     if (d.calibration.gap.p <= kFitsAbove) {
@@ -462,6 +478,8 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   if (const auto calibrated = shown.find({}); calibrated != shown.end())
     outcome.calibrated = with_gap(calibrated->second, p);
   if (const Judgement* named = named_first(found)) {
+    if (const auto error = not_to_be_shown.find(named->hypothesis.effects); error != not_to_be_shown.end())
+      throw TooFewRuns(error->second);
     outcome.augmented =
         with_gap(is_shown(*named) ? shown.at(named->hypothesis.effects) : simulate(named->best, run, outcome),
                  fitted(space_, *named));
