@@ -152,42 +152,30 @@ Judgement judge(const ModelSpace& space, const Likelihood& likelihood, const Hyp
 
 // Change of the values by the effects at a point, in standard uncertainties, without what the base parameters
 // can make up for (to first order).
-struct Signature {
-  Eigen::VectorXd change;
-  double unsure = 0;  // mean square of it that is not known
-  double size() const {
-    const auto n = static_cast<double>(change.size());
-    return n > 0 ? std::sqrt(std::max(change.squaredNorm() / n - unsure, 0.0)) : 0.0;
-  }
-};
-Signature signature(const ModelSpace& space, const LearntModel& model, const Eigen::MatrixXd& covariance,
-                    const ModelPoint& point) {
-  const SurfacePrediction effects = model.change_at(point);
+Eigen::VectorXd signature(const ModelSpace& space, const LearntModel& model,
+                          const Eigen::MatrixXd& covariance, const ModelPoint& point) {
+  const SurfacePrediction with = model.at(point);
+  const Eigen::VectorXd without = model.at({point.base, {}}).mean;
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
   const Eigen::LLT<Eigen::MatrixXd> factor(
       Eigen::MatrixXd(scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal()));
-  const auto whitened = [&](const Eigen::MatrixXd& x) -> Eigen::MatrixXd {
-    return factor.matrixL().solve(scale.cwiseInverse().asDiagonal() * x);
+  const auto whitened = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+    return factor.matrixL().solve(x.cwiseQuotient(scale));
   };
-  const Eigen::Index n = scale.size(), p = static_cast<Eigen::Index>(space.base.size());
-  Eigen::MatrixXd slopes(n, p);
+  const auto p = static_cast<Eigen::Index>(space.base.size());
+  Eigen::MatrixXd slopes(with.mean.size(), p);
   for (Eigen::Index k = 0; k < p; ++k) {
     ModelPoint up{point.base, {}}, down = up;
     up.base[k] += kStep;
     down.base[k] -= kStep;
     slopes.col(k) = whitened((model.at(up).mean - model.at(down).mean) / (2 * kStep));
   }
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(slopes);
-  const Eigen::MatrixXd made_up =
-      Eigen::MatrixXd(qr.householderQ()).leftCols(qr.rank());  // directions of the slopes
-  const auto left = [&](const Eigen::MatrixXd& x) -> Eigen::MatrixXd {
-    return x - made_up * (made_up.transpose() * x);
-  };
-  const Eigen::MatrixXd spread = left(whitened(effects.covariance));
-  Signature result;
-  result.change = left(whitened(effects.mean));
-  result.unsure = n > 0 ? left(whitened(spread.transpose())).trace() / static_cast<double>(n) : 0.0;
-  return result;
+  const Eigen::VectorXd change = whitened(with.mean - without);
+  return change - slopes * slopes.colPivHouseholderQr().solve(change);
+}
+
+double rms(const Eigen::VectorXd& x) {
+  return x.size() > 0 ? x.norm() / std::sqrt(static_cast<double>(x.size())) : 0.0;
 }
 
 // Numbers, and parts of them, at the nominal parameters.
@@ -272,26 +260,17 @@ LearntModel::LearntModel(const ModelSpace& space, const std::vector<std::string>
   for (std::size_t e = 0; e < experiments.size(); ++e) surfaces_.emplace_back(space, experiments[e], runs[e]);
 }
 
-SurfacePrediction LearntModel::together(
-    const std::function<SurfacePrediction(const ResponseSurface&)>& of_one) const {
+SurfacePrediction LearntModel::at(const ModelPoint& point) const {
   Eigen::Index n = 0, first = 0;
   for (const ResponseSurface& surface : surfaces_) n += surface.outputs();
   SurfacePrediction all{Eigen::VectorXd(n), Eigen::MatrixXd::Zero(n, n)};
   for (const ResponseSurface& surface : surfaces_) {
-    const SurfacePrediction here = of_one(surface);
+    const SurfacePrediction here = surface.at(point);
     all.mean.segment(first, surface.outputs()) = here.mean;
     all.covariance.block(first, first, surface.outputs(), surface.outputs()) = here.covariance;
     first += surface.outputs();
   }
   return all;
-}
-
-SurfacePrediction LearntModel::at(const ModelPoint& point) const {
-  return together([&](const ResponseSurface& surface) { return surface.at(point); });
-}
-
-SurfacePrediction LearntModel::change_at(const ModelPoint& point) const {
-  return together([&](const ResponseSurface& surface) { return surface.change_at(point); });
 }
 
 std::vector<const ResponseSurface*> LearntModel::surfaces() const {
@@ -362,7 +341,7 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
   for (const Judgement& j : d.judgements) sum += std::exp(weight(j) - most);
   for (Judgement& j : d.judgements) {
     j.probability = std::exp(weight(j) - most) / sum;
-    j.signature = detectability(space, model, d.covariance, j.best);
+    j.signature = rms(signature(space, model, d.covariance, j.best));
     if (j.hypothesis.effects.empty() && !j.hypothesis.unknown) d.calibration.probability = j.probability;
   }
   std::stable_sort(d.judgements.begin(), d.judgements.end(),
@@ -370,8 +349,7 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
 
   std::vector<Eigen::VectorXd> signatures;
   for (const Judgement& one : ones) {
-    const Eigen::VectorXd s =
-        signature(space, model, d.covariance, {d.calibration.best.base, one.best.effects}).change;
+    Eigen::VectorXd s = signature(space, model, d.covariance, {d.calibration.best.base, one.best.effects});
     signatures.push_back(s.norm() > 0 ? Eigen::VectorXd(s.normalized()) : s);
   }
   const auto n = static_cast<Eigen::Index>(count);
@@ -448,7 +426,7 @@ Gap simulated_gap(const Diagnosis& d, const LearntModel& model, const Eigen::Vec
 
 double detectability(const ModelSpace& space, const LearntModel& model, const Eigen::MatrixXd& covariance,
                      const ModelPoint& point) {
-  return signature(space, model, covariance, point).size();
+  return rms(signature(space, model, covariance, point));
 }
 
 }  // namespace scree

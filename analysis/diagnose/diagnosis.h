@@ -2,7 +2,6 @@
 // What measurements say of a model: where it disagrees, whether its parameters can mend that, which effect
 // can, and what cannot be told.
 #include <Eigen/Dense>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -104,13 +103,11 @@ class LearntModel {
  public:
   /// Throws std::invalid_argument, see ResponseSurface.
   LearntModel(const ModelSpace& space, const std::vector<std::string>& experiments, const DesignRuns& runs);
-  /// Of all values, in their order; and what the effects of a point change there.
+  /// Of all values, in their order.
   SurfacePrediction at(const ModelPoint& point) const;
-  SurfacePrediction change_at(const ModelPoint& point) const;
   std::vector<const ResponseSurface*> surfaces() const;
 
  private:
-  SurfacePrediction together(const std::function<SurfacePrediction(const ResponseSurface&)>& of_one) const;
   std::vector<ResponseSurface> surfaces_;
 };
 
@@ -131,8 +128,7 @@ Gap simulated_gap(const Diagnosis& diagnosis, const LearntModel& model, const Ei
                   int fitted);
 
 /// Root mean square change of the measured numbers by the effects at a point, in standard uncertainties, as
-/// far as other base parameters cannot make up for it. What is not known of the surface is taken off the
-/// square: learnt from few runs it is not flat where an effect does nothing.
+/// far as other base parameters cannot make up for it.
 double detectability(const ModelSpace& space, const LearntModel& model, const Eigen::MatrixXd& covariance,
                      const ModelPoint& point);
 

@@ -15,20 +15,19 @@ namespace {
 constexpr double kBase1 = 1, kBase2 = 0.5, kBase11 = 0.5, kBase3 = 0.3;
 constexpr double kEffect1 = 1, kEffect2 = 0.6, kEffect3 = 0.4, kWithBase = 0.5, kWithOther = 0.5,
                  kWithOther2 = 0.3, kTogether = 0.5;
-constexpr double kLine = 1, kLineWithBase = 1;  // at the end of the range
-constexpr int kKnots = 8;                       // along an amplitude's root, 0 not counted
-constexpr double kConstant = 1e4;               // of the scatter
+constexpr double kHat = 1;
+constexpr int kHats = 5;           // along an amplitude, each a sixth of the range wide to either side
+constexpr double kConstant = 1e4;  // of the scatter
 
-// Sizes that a group may have, over the scatter; normal prior on their logarithm.
+// Sizes that a group may have, over the scatter; half a unit of a normal prior on their logarithm each way.
 constexpr std::array<double, 11> kSizes{0.02, 0.1, 0.3, 0.7, 1.5, 3, 6, 15, 50, 200, 1000};
-constexpr double kLogSizeStd = 2;
+constexpr double kLogSizeMean = 0, kLogSizeStd = 2;
+constexpr double kLogHatMean = -3, kLogHatStd = 1.5;  // hats are for what polynomials cannot do
 constexpr int kMostSweeps = 6;
-constexpr double kTiny = 1e-12;  // against rounding: of what is above 0 by its nature
 
 // 1 at the knot, 0 from its neighbours on; knots of negative amplitudes are negative.
-double line(double amplitude, int knot) {
-  const double along = std::copysign(std::sqrt(std::abs(amplitude)), amplitude);
-  return std::max(0.0, 1 - std::abs(kKnots * along - knot));
+double hat(double amplitude, int knot) {
+  return std::max(0.0, 1 - std::abs((kHats + 1) * amplitude - knot));
 }
 
 double power(double x, int n) {
@@ -48,12 +47,11 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
   const std::size_t p = space.base.size();
   const std::vector<int> none(p, 0);
   const auto base = [&](double prior, std::initializer_list<std::size_t> axes) {
-    Term term{0, prior, none};
+    Term term{0, -1, prior, none};
     for (const std::size_t axis : axes) ++term.base_power[axis];
     terms_.push_back(std::move(term));
   };
-  base(kConstant, {});
-  terms_.back().group = -1;
+  base(0, {});  // the constant; its prior is its own
   for (std::size_t i = 0; i < p; ++i) {
     base(kBase1, {i});
     base(kBase2, {i, i});
@@ -71,32 +69,30 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
     }
   for (std::size_t e = 0; e < space.effects.size(); ++e) {
     if (!acts_[e] || !simulated[e]) continue;
-    const int effect = static_cast<int>(e), polynomial = effect + 1,
-              lines = polynomial + static_cast<int>(space.effects.size());
-    const auto add = [&](double prior, int order, int other) -> Term& {
-      return terms_.emplace_back(Term{polynomial, prior, none, effect, order, other});
+    const int effect = static_cast<int>(e), group = effect + 1;
+    const auto add = [&](double prior, int order, int other) {
+      terms_.push_back({group, -1, prior, none, effect, order, other});
     };
     add(kEffect1, 1, 0);
     add(kEffect2, 2, 0);
     add(kEffect3, 3, 0);
-    for (std::size_t i = 0; i < p; ++i) add(kWithBase, 1, 0).base_power[i] = 1;
+    for (int knot = -kHats; knot <= kHats; ++knot) {
+      if (knot == 0 || (knot < 0 ? space.effects[e].lowest() >= 0 : space.effects[e].highest() <= 0))
+        continue;
+      add(kHat, 0, 0);
+      terms_.back().hat = knot;
+      terms_.back().group += static_cast<int>(space.effects.size());
+    }
+    for (std::size_t i = 0; i < p; ++i) {
+      add(kWithBase, 1, 0);
+      terms_.back().base_power[i] = 1;
+    }
     for (std::size_t k = 1; k < space.effects[e].axes.size(); ++k) {
       add(kWithOther, 1, static_cast<int>(k));
       add(kWithOther2, 2, static_cast<int>(k));
     }
-    for (int knot = -kKnots; knot <= kKnots; ++knot) {
-      if (knot == 0 || (knot < 0 ? space.effects[e].lowest() >= 0 : space.effects[e].highest() <= 0))
-        continue;
-      const auto add_line = [&](double prior) -> Term& {
-        return terms_.emplace_back(
-            Term{lines, prior / std::sqrt(double{kKnots}), none, effect, 0, 0, -1, knot});
-      };
-      add_line(kLine);
-      for (std::size_t i = 0; i < p; ++i) add_line(kLineWithBase).base_power[i] = 1;
-    }
   }
-  groups_ = 1 + 2 * static_cast<int>(space.effects.size());
-  for (const auto& [a, b] : together) terms_.push_back({groups_++, kTogether, none, a, 1, 0, b});
+  for (const auto& [a, b] : together) terms_.push_back({a + 1, b + 1, kTogether, none, a, 1, 0, b});
   known_pairs_.assign(together.begin(), together.end());
 }
 
@@ -113,8 +109,7 @@ void ResponseSurface::values(const ModelPoint& point, std::vector<Eigen::Index>&
     if (term.effect >= 0) {
       const EffectAt* effect = there[static_cast<std::size_t>(term.effect)];
       if (effect == nullptr) continue;
-      product =
-          term.knot != 0 ? line(effect->amplitude(), term.knot) : power(effect->amplitude(), term.power);
+      product = term.hat != 0 ? hat(effect->amplitude(), term.hat) : power(effect->amplitude(), term.power);
       if (product == 0) continue;
       if (term.other > 0) product *= effect->at[term.other];
     }
@@ -130,109 +125,70 @@ void ResponseSurface::values(const ModelPoint& point, std::vector<Eigen::Index>&
   }
 }
 
-// Coefficients are independent a priori, but for those of a broken line, which are sums of the steps from 0
-// to their knot.
-Eigen::MatrixXd ResponseSurface::root_of(const std::vector<Eigen::Index>& group) const {
-  const auto n = static_cast<Eigen::Index>(group.size());
-  Eigen::MatrixXd root = Eigen::MatrixXd::Zero(n, n);
-  for (Eigen::Index a = 0; a < n; ++a)
-    for (Eigen::Index b = 0; b < n; ++b) {
-      const Term &term = terms_[static_cast<std::size_t>(group[static_cast<std::size_t>(a)])],
-                 &step = terms_[static_cast<std::size_t>(group[static_cast<std::size_t>(b)])];
-      const bool on_the_way = step.knot != 0 && step.base_power == term.base_power &&
-                              (step.knot > 0) == (term.knot > 0) &&
-                              std::abs(step.knot) <= std::abs(term.knot);
-      if (a == b || on_the_way) root(a, b) = step.prior;
+ResponseSurface::Fit ResponseSurface::fit(const Eigen::MatrixXd& features, const Eigen::VectorXd& y) const {
+  const Eigen::Index n = features.rows(), k = features.cols();
+  const Eigen::MatrixXd square = features.transpose() * features;
+  const Eigen::VectorXd product = features.transpose() * y;
+  const double yy = y.squaredNorm();
+  Eigen::VectorXd size = Eigen::VectorXd::Ones(groups_), prior(k);
+  Eigen::LLT<Eigen::MatrixXd> factor;
+  double misfit = 0;
+  // Logarithm of the marginal likelihood with the scatter's variance at its best, times the prior of sizes.
+  const auto evaluate = [&] {
+    double log_density = 0;
+    for (Eigen::Index t = 0; t < k; ++t) {
+      const Term& term = terms_[static_cast<std::size_t>(t)];
+      const double first = size[term.group];
+      prior[t] = term.prior == 0         ? kConstant
+                 : term.second_group < 0 ? term.prior * first
+                                         : term.prior * std::sqrt(first * size[term.second_group]);
     }
-  return root;
-}
-
-// The size of one group after the other is put to its best. With V the group's Group::at_runs and Q the
-// inverse of the runs' covariance, a change d of the size's square changes that covariance by d V V': its
-// determinant by the product of 1 + d l over the eigenvalues l of V' Q V, and what the likelihood has of y
-// the same way.
-ResponseSurface::Fit ResponseSurface::fit(const Features& features, const Eigen::VectorXd& y) const {
-  const Eigen::Index n = features.all.rows(), k = features.all.cols();
-  Eigen::VectorXd size = Eigen::VectorXd::Ones(groups_);
-  const auto factor = [&] {
-    Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(n, n, kConstant * kConstant);
-    covariance.diagonal().array() += 1;
+    Eigen::MatrixXd a = square;
+    a.diagonal() += prior.cwiseAbs2().cwiseInverse();
+    factor.compute(a);
+    misfit = std::max(yy - product.dot(factor.solve(product)), 1e-12 * yy + 1e-300);
+    log_density -= prior.array().log().sum();
+    log_density -= factor.matrixLLT().diagonal().array().log().sum();
+    log_density -= 0.5 * static_cast<double>(n) * std::log(misfit);
     for (Eigen::Index g = 0; g < groups_; ++g) {
-      const Eigen::MatrixXd& v = features.groups[static_cast<std::size_t>(g)].at_runs;
-      if (v.cols() > 0) covariance.selfadjointView<Eigen::Lower>().rankUpdate(v, size[g] * size[g]);
+      const bool hats = g > static_cast<Eigen::Index>(acts_.size());
+      const double z =
+          (std::log(size[g]) - (hats ? kLogHatMean : kLogSizeMean)) / (hats ? kLogHatStd : kLogSizeStd);
+      log_density -= 0.5 * z * z;
     }
-    return Eigen::LLT<Eigen::MatrixXd>(covariance);
+    return log_density;
   };
-  const double least = kTiny * y.squaredNorm() + 1e-300;
+  std::vector<bool> used(static_cast<std::size_t>(groups_), false);
+  for (const Term& term : terms_) used[static_cast<std::size_t>(term.group)] = true;
+  double best = evaluate();
   bool moved = true;
   for (int sweep = 0; sweep < kMostSweeps && moved; ++sweep) {
     moved = false;
-    Eigen::MatrixXd q = factor().solve(Eigen::MatrixXd::Identity(n, n));
-    Eigen::VectorXd qy = q * y;
-    double misfit = y.dot(qy);
     for (Eigen::Index g = 0; g < groups_; ++g) {
-      const Eigen::MatrixXd& v = features.groups[static_cast<std::size_t>(g)].at_runs;
-      if (v.cols() == 0) continue;
-      Eigen::MatrixXd qv = q * v;
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(v.transpose() * qv);
-      const Eigen::ArrayXd roots = eigen.eigenvalues().cwiseMax(0.0),
-                           along = (eigen.eigenvectors().transpose() * (v.transpose() * qy)).array();
-      const auto shrunk = [&](double change) -> Eigen::ArrayXd {
-        return change / (1 + change * roots).max(kTiny);
-      };
-      const auto misfit_at = [&](double change) {
-        return std::max(misfit - (shrunk(change) * along.square()).sum(), least);
-      };
+      if (!used[static_cast<std::size_t>(g)]) continue;
       const double before = size[g];
-      double usual = 0;  // a priori: 1; of a pair the mean of its effects
-      if (const auto pair = g - 1 - 2 * static_cast<Eigen::Index>(acts_.size()); pair >= 0) {
-        const auto& [a, b] = known_pairs_[static_cast<std::size_t>(pair)];
-        usual = 0.5 * std::log(size_of(size, a) * size_of(size, b));
-      }
-      // Logarithm of the marginal likelihood with the scatter's variance at its best, times the size's prior.
-      const auto log_density = [&](double here) {
-        const double change = here * here - before * before, z = (std::log(here) - usual) / kLogSizeStd;
-        return -0.5 * ((1 + change * roots).max(kTiny).log().sum() +
-                       static_cast<double>(n) * std::log(misfit_at(change)) + z * z);
-      };
-      double best = log_density(before), chosen = before;
-      for (const double candidate : kSizes)
-        if (const double here = log_density(candidate); here > best + 1e-9) {
+      double chosen = before;
+      for (const double candidate : kSizes) {
+        size[g] = candidate;
+        const double here = evaluate();
+        if (here > best + 1e-9) {
           best = here;
           chosen = candidate;
+          moved = moved || candidate != before;
         }
-      if (chosen == before) continue;
-      moved = true;
+      }
       size[g] = chosen;
-      const double change = chosen * chosen - before * before;
-      misfit = misfit_at(change);
-      qv = (qv * eigen.eigenvectors()).eval();
-      const Eigen::MatrixXd lost = qv * shrunk(change).matrix().asDiagonal();
-      q.noalias() -= lost * qv.transpose();
-      qy.noalias() -= lost * along.matrix();
     }
   }
-  const Eigen::LLT<Eigen::MatrixXd> last = factor();
-  Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(k, k),
-                  with_runs = Eigen::MatrixXd::Zero(n, k);  // covariances
-  for (Eigen::Index t = 0; t < k; ++t)
-    if (terms_[static_cast<std::size_t>(t)].group < 0) {
-      prior(t, t) = kConstant * kConstant;
-      with_runs.col(t) = prior(t, t) * features.all.col(t);
-    }
-  for (Eigen::Index g = 0; g < groups_; ++g) {
-    const Group& group = features.groups[static_cast<std::size_t>(g)];
-    prior(group.terms, group.terms) = size[g] * size[g] * group.root * group.root.transpose();
-    with_runs(Eigen::all, group.terms) = size[g] * size[g] * group.at_runs * group.root.transpose();
-  }
-  const Eigen::MatrixXd gain = last.solve(with_runs).transpose();
+  evaluate();
   Fit fit;
-  fit.scatter = std::max(y.dot(last.solve(y)), least) / static_cast<double>(n);
-  fit.mean = gain * y;
-  fit.covariance = fit.scatter * (prior - gain * with_runs);
+  fit.scatter = misfit / static_cast<double>(n);
+  fit.mean = factor.solve(product);
+  const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(k, k));
+  fit.covariance = fit.scatter * inverse;
   fit.size = size;
-  fit.residual = y - features.all * fit.mean;
-  const Eigen::VectorXd leverage = features.all.cwiseProduct(gain.transpose()).rowwise().sum();
+  fit.residual = y - features * fit.mean;
+  const Eigen::VectorXd leverage = (features * inverse).cwiseProduct(features).rowwise().sum();
   fit.freedom = std::max(static_cast<double>(n) - leverage.sum(), 1.0);
   double sum = 0;
   for (Eigen::Index i = 0; i < n; ++i)
@@ -245,6 +201,7 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
                                  const std::vector<DesignRun>& runs) {
   for (const CandidateEffect& effect : space.effects) acts_.push_back(effect.acts_in(experiment));
   if (acts_.size() > 64) throw std::invalid_argument("at most 64 effects");
+  groups_ = 1 + 2 * static_cast<int>(space.effects.size());
   const auto n = static_cast<Eigen::Index>(runs.size());
   const auto plain =
       std::count_if(runs.begin(), runs.end(), [](const auto& r) { return r.at.effects.empty(); });
@@ -254,23 +211,14 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
                     plain, least_base_runs(space.base.size())));
   make_terms(space, runs);
   const Eigen::Index p = runs.front().outputs.size(), k = static_cast<Eigen::Index>(terms_.size());
-  Features features{Eigen::MatrixXd::Zero(n, k), {}};
-  Eigen::MatrixXd y(n, p);
+  Eigen::MatrixXd features = Eigen::MatrixXd::Zero(n, k), y(n, p);
   std::vector<Eigen::Index> which;
   std::vector<double> value;
   for (Eigen::Index i = 0; i < n; ++i) {
     const DesignRun& run = runs[static_cast<std::size_t>(i)];
     values(run.at, which, value);
-    for (std::size_t t = 0; t < which.size(); ++t) features.all(i, which[t]) = value[t];
+    for (std::size_t t = 0; t < which.size(); ++t) features(i, which[t]) = value[t];
     y.row(i) = run.outputs.transpose();
-  }
-  for (int g = 0; g < groups_; ++g) {
-    Group group;
-    for (Eigen::Index t = 0; t < k; ++t)
-      if (terms_[static_cast<std::size_t>(t)].group == g) group.terms.push_back(t);
-    group.root = root_of(group.terms);
-    group.at_runs = features.all(Eigen::all, group.terms) * group.root;
-    features.groups.push_back(std::move(group));
   }
   centre_ = y.colwise().mean();
   const Eigen::MatrixXd off = y.rowwise() - centre_.transpose();
@@ -311,12 +259,6 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
   scatter_ = to_outputs_ * variance.asDiagonal() * to_outputs_.transpose();
 }
 
-// The larger of the sizes of an effect's polynomial and of its lines: either may do all.
-double ResponseSurface::size_of(const Eigen::VectorXd& size, int effect) const {
-  const auto effects = static_cast<Eigen::Index>(acts_.size());
-  return std::max(size[effect + 1], size[effect + 1 + effects]);
-}
-
 // Of products of effects that were never simulated together.
 double ResponseSurface::pair_variance(const ModelPoint& point, const Fit& fit) const {
   double variance = 0;
@@ -326,23 +268,15 @@ double ResponseSurface::pair_variance(const ModelPoint& point, const Fit& fit) c
       const std::pair<int, int> pair(static_cast<int>(a.effect), static_cast<int>(b.effect));
       if (std::find(known_pairs_.begin(), known_pairs_.end(), pair) != known_pairs_.end()) continue;
       const double product = kTogether * a.amplitude() * b.amplitude();
-      variance +=
-          fit.scatter * product * product * size_of(fit.size, pair.first) * size_of(fit.size, pair.second);
+      variance += fit.scatter * product * product * fit.size[pair.first + 1] * fit.size[pair.second + 1];
     }
   return variance;
 }
 
-SurfacePrediction ResponseSurface::sum_of(const ModelPoint& point, bool effects_alone) const {
+SurfacePrediction ResponseSurface::at(const ModelPoint& point) const {
   std::vector<Eigen::Index> which;
   std::vector<double> value;
   values(point, which, value);
-  if (effects_alone) {  // terms of the base come first
-    const auto base = std::count_if(which.begin(), which.end(), [&](Eigen::Index t) {
-      return terms_[static_cast<std::size_t>(t)].effect < 0;
-    });
-    which.erase(which.begin(), which.begin() + base);
-    value.erase(value.begin(), value.begin() + base);
-  }
   const Eigen::Index p = outputs();
   const std::size_t m = which.size();
   Eigen::VectorXd mean(p), variance(p);
@@ -358,17 +292,7 @@ SurfacePrediction ResponseSurface::sum_of(const ModelPoint& point, bool effects_
     mean[j] = sum;
     variance[j] = square + pair_variance(point, fit);
   }
-  return {to_outputs_ * mean, to_outputs_ * variance.asDiagonal() * to_outputs_.transpose()};
-}
-
-SurfacePrediction ResponseSurface::at(const ModelPoint& point) const {
-  SurfacePrediction all = sum_of(point, false);
-  all.mean += centre_;
-  return all;
-}
-
-SurfacePrediction ResponseSurface::change_at(const ModelPoint& point) const {
-  return sum_of(point, true);
+  return {centre_ + to_outputs_ * mean, to_outputs_ * variance.asDiagonal() * to_outputs_.transpose()};
 }
 
 }  // namespace scree

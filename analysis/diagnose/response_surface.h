@@ -4,14 +4,13 @@
 //
 // Each output is a polynomial of the coordinates with Gaussian priors on its coefficients: third order in the
 // base parameters, third order in an effect's amplitude, products of the amplitude with the base parameters,
-// with the effect's other parameters and with the amplitudes of other effects; and a broken line along the
-// root of the amplitude, alone and times each base parameter, whose steps from knot to knot are independent a
-// priori (a random walk): many effects rise fast and have done all they can before the end of their range. An
-// effect that is absent changes nothing. How large the coefficients of the base, of each effect, of its lines
-// and of each pair are a priori, and how large the scatter is, are those of the largest marginal likelihood.
-// Outputs of one run are correlated: the polynomials are those of combinations of the outputs whose scatter
-// is not. Source: Rasmussen & Williams, Gaussian Processes for Machine Learning (2006), 2.1 and 5.4; Higdon
-// et al., J. Am. Stat. Assoc. 103 (2008), for several outputs.
+// with the effect's other parameters and with the amplitudes of other effects; and hats along the amplitude,
+// for effects that have done all they can before the end of their range. An effect that is absent
+// changes nothing. How large the coefficients of the base and of each effect are a priori, and how large the
+// scatter is, are those of the largest marginal likelihood. Outputs of one run are correlated: the
+// polynomials are those of combinations of the outputs whose scatter is not.
+// Source: Rasmussen & Williams, Gaussian Processes for Machine Learning (2006), 2.1 and 5.4; Higdon et al.,
+// J. Am. Stat. Assoc. 103 (2008), for several outputs.
 #include <Eigen/Dense>
 #include <string>
 #include <vector>
@@ -39,8 +38,6 @@ class ResponseSurface {
   ResponseSurface(const ModelSpace& space, const std::string& experiment, const std::vector<DesignRun>& runs);
 
   SurfacePrediction at(const ModelPoint& point) const;
-  /// What the effects of a point change there.
-  SurfacePrediction change_at(const ModelPoint& point) const;
   /// Covariance of one run about the mean: between seeds.
   const Eigen::MatrixXd& scatter() const { return scatter_; }
   Eigen::Index outputs() const { return scatter_.rows(); }
@@ -53,13 +50,14 @@ class ResponseSurface {
 
  private:
   struct Term {                   // a monomial
-    int group;                    // whose size its prior has: 0: base; effects; their lines; pairs; -1: none
-    double prior;                 // standard deviation over the size; of a line: of a step from knot to knot
+    int group;                    // whose size its prior has: 0: base, 1 + k: effect k, then hats of effects
+    int second_group;             // -1, or that of the other effect of a product
+    double prior;                 // standard deviation over the size
     std::vector<int> base_power;  // by base axis
     int effect = -1, power = 0;   // of the amplitude
     int other = 0;                // a further parameter of the effect, from 1; 0: none
     int second = -1;              // the other effect of a product
-    int knot = 0;                 // not 0: in place of a power, the broken line that is 1 at this knot alone
+    int hat = 0;                  // not 0: in place of a power, the hat at this knot of the amplitude
   };
   void make_terms(const ModelSpace& space, const std::vector<DesignRun>& runs);
   // The terms that do not vanish at a point, and their values.
@@ -74,21 +72,8 @@ class ResponseSurface {
     Eigen::VectorXd residual;    // by run
     double leave_one_out;
   };
-  // The terms at the runs, and what is known of their coefficients before.
-  struct Group {
-    std::vector<Eigen::Index> terms;
-    Eigen::MatrixXd root;     // R: a priori their covariance over the square of the size is R R'
-    Eigen::MatrixXd at_runs;  // the terms at the runs times R
-  };
-  struct Features {
-    Eigen::MatrixXd all;  // a row a run, a column a term
-    std::vector<Group> groups;
-  };
-  Eigen::MatrixXd root_of(const std::vector<Eigen::Index>& group) const;
-  Fit fit(const Features& features, const Eigen::VectorXd& y) const;
-  double size_of(const Eigen::VectorXd& size, int effect) const;
+  Fit fit(const Eigen::MatrixXd& features, const Eigen::VectorXd& y) const;
   double pair_variance(const ModelPoint& point, const Fit& fit) const;
-  SurfacePrediction sum_of(const ModelPoint& point, bool effects_alone) const;
 
   std::vector<bool> acts_;                        // by effect of the space
   std::vector<std::pair<int, int>> known_pairs_;  // of effects that were simulated together

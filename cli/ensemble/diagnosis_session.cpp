@@ -38,22 +38,15 @@ Eigen::VectorXd coordinates(const std::vector<double>& unit, std::size_t first, 
   return x;
 }
 
-}  // namespace
-
-std::vector<double> amplitudes_of(const CandidateEffect& effect, int count) {
+// Amplitudes spread evenly over the range, none of them 0.
+double amplitude(const CandidateEffect& effect, int k, int count) {
   const double low = effect.lowest(), high = effect.highest();
-  const bool both = low < 0 && high > 0;
-  std::vector<double> all;
-  for (int k = 0; k < count; ++k) {
-    const bool down = high <= 0 || (both && k % 2 == 1);
-    const int of = both ? (down ? count / 2 : (count + 1) / 2) : count;
-    const double share = static_cast<double>(both ? k / 2 + 1 : k + 1) / of;
-    all.push_back(share * share * (down ? low : high));
-  }
-  return all;
+  const double share = static_cast<double>(k) / (count - 1);
+  if (low >= 0) return high * (k + 1) / count;
+  if (high <= 0) return low * (k + 1) / count;
+  const double here = low + share * (high - low);
+  return std::abs(here) > 1e-6 ? here : 0.5 * high / count;
 }
-
-namespace {
 
 bool moved(const ModelPoint& a, const ModelPoint& b) {
   if (a.effects.size() != b.effects.size()) return true;
@@ -64,11 +57,6 @@ bool moved(const ModelPoint& a, const ModelPoint& b) {
   }
   return most > kMoved;
 }
-
-// Of a model, that gave what was measured.
-struct TooFewRuns : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 bool same(const DiagnosisVerdict& a, const DiagnosisVerdict& b, const Diagnosis& of_a,
           const Diagnosis& of_b) {
@@ -84,27 +72,6 @@ const Judgement* best_effect(const Diagnosis& d) {
   for (const Judgement& j : d.judgements)
     if (!j.hypothesis.effects.empty()) return &j;
   return nullptr;
-}
-
-// The first of those that are named.
-const Judgement* named_first(const Diagnosis& d) {
-  return d.verdict.kind == DiagnosisVerdict::Kind::effect || d.verdict.kind == DiagnosisVerdict::Kind::group
-             ? &d.judgements[d.verdict.named.front()]
-             : nullptr;
-}
-
-// The leading effect or pair, its rivals, and what would be named, which may be another: a hypothesis of
-// which little was simulated explains almost anything.
-std::vector<const Judgement*> worth_simulating(const Diagnosis& d) {
-  std::vector<const Judgement*> all;
-  for (const Judgement& j : d.judgements)
-    if (!j.hypothesis.effects.empty() && all.size() <= kMostRivals &&
-        (all.empty() || j.probability * kRivalBy > all.front()->probability))
-      all.push_back(&j);
-  if (const Judgement* named = named_first(d);
-      named != nullptr && std::find(all.begin(), all.end(), named) == all.end())
-    all.push_back(named);
-  return all;
 }
 
 int fitted(const ModelSpace& space, const Judgement& j) {
@@ -127,12 +94,11 @@ std::vector<PlannedRun> design_of(const ModelSpace& space, const SimulationCount
     const std::size_t others = effect.axes.size() - 1;
     const std::uint64_t own = hash_of(effect.name);
     seed = kEffectSeeds + own % 100 * kSeedsOfOneEffect;
-    const std::vector<double> amplitudes = amplitudes_of(effect, counts.effect);
     auto points = latin_hypercube(counts.effect, static_cast<int>(p + others), own);
     for (int k = 0; k < counts.effect; ++k) {
       const auto& unit = points[static_cast<std::size_t>(k)];
       Eigen::VectorXd at(static_cast<Eigen::Index>(1 + others));
-      at << amplitudes[static_cast<std::size_t>(k)], coordinates(unit, p, others);
+      at << amplitude(effect, k, counts.effect), coordinates(unit, p, others);
       runs.push_back({{coordinates(unit, 0, p), {{e, at}}}, ++seed});
     }
   }
@@ -240,9 +206,9 @@ std::vector<ExperimentRuns> DiagnosisSession::in_every_experiment(
 }
 
 int DiagnosisSession::most_further() const {
-  // A round simulates the calibrated model, the leading effect, its rivals, and what would be named; the end
-  // what is named.
-  const int points = (3 + static_cast<int>(kMostRivals)) * kMostRounds + 1;
+  // A round simulates the calibrated model and the leading effect; the first its rivals, too; the end what is
+  // named.
+  const int points = 2 * kMostRounds + static_cast<int>(kMostRivals) + 1;
   return static_cast<int>(design_.size()) *
          (points * model_.simulations.check + kExplored * model_.simulations.effect);
 }
@@ -309,9 +275,10 @@ SimulatedModel DiagnosisSession::simulate(const ModelPoint& point, const RunThro
     simulated.runs = std::min(simulated.runs, static_cast<int>(count));
     const Eigen::Index width = static_cast<Eigen::Index>(data_.measured.of(e).size());
     if (count < 2)
-      throw TooFewRuns(fmt::format("{}: {} of {} simulations of the fitted model give the numbers measured{}",
-                                   data_.experiments[e].name, count, model_.simulations.check,
-                                   failure_[e].empty() ? "" : "; the last that failed: " + failure_[e]));
+      throw std::runtime_error(
+          fmt::format("{}: {} of {} simulations of the fitted model give the numbers measured{}",
+                      data_.experiments[e].name, count, model_.simulations.check,
+                      failure_[e].empty() ? "" : "; the last that failed: " + failure_[e]));
     Eigen::MatrixXd y(count, width);
     for (Eigen::Index k = 0; k < count; ++k)
       y.row(k) = learnt_[e][before[e] + static_cast<std::size_t>(k)].outputs.transpose();
@@ -399,40 +366,31 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   LearntModel model = learn();
   Diagnosis d = diagnose(space_, data_.measured, model);
   const int p = static_cast<int>(space_.base.size());
-  std::map<std::vector<std::size_t>, SimulatedModel> shown;  // the last of each hypothesis, by its effects
-  std::map<std::vector<std::size_t>, TooFewRuns> not_to_be_shown;
-  const auto is_shown = [&](const Judgement& j) {
-    if (not_to_be_shown.contains(j.hypothesis.effects)) return true;
-    const auto there = shown.find(j.hypothesis.effects);
-    return there != shown.end() && !moved(there->second.at, j.best);
-  };
+  std::optional<SimulatedModel> calibrated, augmented;
   outcome.settled = d.verdict.kind == DiagnosisVerdict::Kind::nothing;
   for (int round = 0; round < kMostRounds && !outcome.settled; ++round) {
     ++outcome.rounds;
     bool fresh = false;
     // Whether there was anything to simulate.
-    const auto show = [&](const Judgement& j) {
-      if (is_shown(j)) return false;
+    const auto show = [&](const ModelPoint& point, std::optional<SimulatedModel>& shown) {
+      if (shown && !moved(shown->at, point)) return false;
+      shown = simulate(point, run, outcome);
       fresh = true;
-      try {
-        shown.insert_or_assign(j.hypothesis.effects, simulate(j.best, run, outcome));
-        return true;
-      } catch (const TooFewRuns& error) {
-        if (j.hypothesis.effects.empty()) throw;
-        not_to_be_shown.emplace(j.hypothesis.effects, error);
-        std::vector<std::string> effects;
-        for (const std::size_t e : j.hypothesis.effects) effects.push_back(space_.effects[e].name);
-        outcome.notes.push_back(fmt::format("{} could not be tried by full simulations: {}",
-                                            fmt::join(effects, " and "), error.what()));
-        return false;
-      }
+      return true;
     };
-    show(d.calibration);
-    if (d.calibration.gap.p <= kFitsAbove) {
-      const std::vector<const Judgement*> worth = worth_simulating(d);
-      for (const Judgement* j : worth)
-        if (show(*j) && j == worth.front() && round < kExplored) explore(*j, run, outcome);
-    }
+    show(d.calibration.best, calibrated);
+    if (d.calibration.gap.p <= kFitsAbove)
+      if (const Judgement* lead = best_effect(d)) {
+        if (show(lead->best, augmented) && round < kExplored) explore(*lead, run, outcome);
+        std::size_t rivals = 0;
+        for (const Judgement& j : d.judgements)
+          if (round == 0 && &j != lead && !j.hypothesis.effects.empty() && rivals < kMostRivals &&
+              j.probability * kRivalBy > lead->probability) {
+            ++rivals;
+            simulate(j.best, run, outcome);
+            fresh = true;
+          }
+      }
     if (!fresh) {
       outcome.settled = true;
       break;
@@ -441,10 +399,10 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     Diagnosis again = diagnose(space_, data_.measured, model);
     const bool unchanged = same(d.verdict, again.verdict, d, again);
     d = std::move(again);
-    outcome.settled = unchanged && is_shown(d.calibration);
-    for (const Judgement* j : {best_effect(d), named_first(d)})
-      if (j != nullptr && d.calibration.gap.p <= kFitsAbove)
-        outcome.settled = outcome.settled && is_shown(*j);
+    const Judgement* lead = best_effect(d);
+    const bool still = !moved(calibrated->at, d.calibration.best) &&
+                       (!augmented || lead == nullptr || !moved(augmented->at, lead->best));
+    outcome.settled = unchanged && still;
   }
   outcome.diagnosis = std::move(d);
   const Diagnosis& found = outcome.diagnosis;
@@ -471,20 +429,18 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   }
   outcome.nominal.gap =
       simulated_gap(found, model, outcome.nominal.mean, std::max(outcome.nominal.runs, 1), 0);
-  const auto with_gap = [&](SimulatedModel simulated, int parameters) {
-    simulated.gap = simulated_gap(found, model, simulated.mean, simulated.runs, parameters);
-    return simulated;
-  };
-  if (const auto calibrated = shown.find({}); calibrated != shown.end())
-    outcome.calibrated = with_gap(calibrated->second, p);
-  if (const Judgement* named = named_first(found)) {
-    if (const auto error = not_to_be_shown.find(named->hypothesis.effects); error != not_to_be_shown.end())
-      throw TooFewRuns(error->second);
-    outcome.augmented =
-        with_gap(is_shown(*named) ? shown.at(named->hypothesis.effects) : simulate(named->best, run, outcome),
-                 fitted(space_, *named));
+  if (calibrated) {
+    calibrated->gap = simulated_gap(found, model, calibrated->mean, calibrated->runs, p);
+    outcome.calibrated = calibrated;
+  }
+  if (found.verdict.kind == DiagnosisVerdict::Kind::effect ||
+      found.verdict.kind == DiagnosisVerdict::Kind::group) {
+    const Judgement& named = found.judgements[found.verdict.named.front()];
+    if (!augmented || moved(augmented->at, named.best)) augmented = simulate(named.best, run, outcome);
+    augmented->gap = simulated_gap(found, model, augmented->mean, augmented->runs, fitted(space_, named));
+    outcome.augmented = augmented;
     outcome.held_out_calibrated = held_out(space_, found, model, {{}, false, 0});
-    outcome.held_out_augmented = held_out(space_, found, model, named->hypothesis);
+    outcome.held_out_augmented = held_out(space_, found, model, named.hypothesis);
   }
   if (found.verdict.kind == DiagnosisVerdict::Kind::group) outcome.next = tell_apart(outcome);
   return outcome;

@@ -27,10 +27,6 @@ struct PlannedRun {
   std::uint64_t seed = 0;
 };
 
-/// Amplitudes (coordinates) at which an effect is simulated, over its range to its ends, none of them 0, the
-/// closer to each other the smaller: many effects do much of what they do at the low end of their range.
-std::vector<double> amplitudes_of(const CandidateEffect& effect, int count);
-
 /// The simulations that a diagnosis needs whatever the data: nominal, over the base parameters, and of every
 /// effect. They depend on the model and the effects' names alone, so that all data of the same experiments
 /// share them, and leaving an effect out changes nothing for the others.
@@ -95,7 +91,7 @@ class DiagnosisSession {
   // All outputs of the simulations, for what was not measured; by experiment.
   std::vector<std::vector<std::pair<ModelPoint, std::map<std::string, double>>>> everything_;
   std::vector<std::string> failure_;  // the last of each experiment, why; empty without one
-  std::uint64_t checks_ = 0;          // seeds used for them
+  std::uint64_t checks_ = 0;  // seeds used for them
 };
 
 }  // namespace scree

@@ -14,9 +14,7 @@ namespace {
 
 constexpr double kInnerBase = 0.6, kInnerOther = 0.8;  // of the ranges, from which a truth is drawn
 constexpr int kSteps = 60;                             // along an amplitude's range
-constexpr std::uint64_t kTwinSeeds = 1'000'000, kSeedsOfOneTwin = 2000;
-constexpr std::uint64_t kLookSeeds = kTwinSeeds + 1000;
-constexpr int kLooks = 2, kRunsOfLook = 8;  // at the amplitude that seems right
+constexpr std::uint64_t kTwinSeeds = 1'000'000, kSeedsOfOneTwin = 1000;
 
 std::vector<Dataset::Experiment> experiments_of(const DiagnosisModel& model) {
   std::vector<Dataset::Experiment> all;
@@ -53,19 +51,16 @@ Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::fil
   const std::vector<Dataset::Experiment> experiments = experiments_of(model);
   const ModelSpace space = space_of(model, experiments, {});
   std::vector<std::string> names;
-  for (const Dataset::Experiment& each : experiments) names.push_back(each.name);
-  DesignRuns learnt(experiments.size());
-  const auto learn_from = [&](const std::vector<PlannedRun>& points, const RunThrough& run) {
-    std::vector<ExperimentRuns> planned;
-    for (const Dataset::Experiment& each : experiments)
-      planned.push_back(runs_of(model, space, each, points, asset_dir));
-    const auto results = done(planned, run);
-    for (std::size_t e = 0; e < planned.size(); ++e)
-      for (DesignRun& each : gather(planned[e], results[e], model.experiments[e].observables).runs)
-        learnt[e].push_back(std::move(each));
-  };
-  learn_from(design_of(space, model.simulations), design);
-  LearntModel surface(space, names, learnt);
+  std::vector<ExperimentRuns> planned;
+  for (const Dataset::Experiment& each : experiments) {
+    names.push_back(each.name);
+    planned.push_back(runs_of(model, space, each, design_of(space, model.simulations), asset_dir));
+  }
+  DesignRuns learnt;
+  const auto results = done(planned, design);
+  for (std::size_t e = 0; e < planned.size(); ++e)
+    learnt.push_back(gather(planned[e], results[e], model.experiments[e].observables).runs);
+  const LearntModel surface(space, names, learnt);
 
   // Covariance of the means that will be measured.
   Eigen::Index n = 0, first = 0;
@@ -89,7 +84,6 @@ Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::fil
   Random random(spec.seed, 0, RandomPurpose::measurement);
   twin.truth.at.base.resize(static_cast<Eigen::Index>(space.base.size()));
   for (double& x : twin.truth.at.base) x = kInnerBase * random.uniform(-1, 1);
-  int looked = 0;
   for (const std::string& name : spec.effects) {
     const std::size_t e = space.find(name);
     if (e == space.effects.size())
@@ -106,46 +100,28 @@ Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::fil
       return detectability(space, surface, covariance, {twin.truth.at.base, {there}});
     };
     // The first crossing from 0; the other direction if this one is too weak.
-    const auto crossing = [&] {
-      double found = 0, strongest = 0;
-      for (const double way : {sign, -sign}) {
-        const double end = way < 0 ? ends[0] : ends[1];
-        if (end * way <= 0 || found != 0) continue;
-        for (int k = 1; k <= kSteps && found == 0; ++k) {
-          const double here = end * k / kSteps;
-          strongest = std::max(strongest, strength(here));
-          if (strongest < spec.strength) continue;
-          double low = end * (k - 1) / kSteps, high = here;
-          for (int b = 0; b < 40; ++b) {
-            const double middle = 0.5 * (low + high);
-            (strength(middle) < spec.strength ? low : high) = middle;
-          }
-          found = high;
+    double found = 0, strongest = 0;
+    for (int way = 0; way < 2 && found == 0; ++way, sign = -sign) {
+      const double end = sign < 0 ? ends[0] : ends[1];
+      if (end * sign <= 0) continue;
+      for (int k = 1; k <= kSteps && found == 0; ++k) {
+        const double here = end * k / kSteps;
+        strongest = std::max(strongest, strength(here));
+        if (strongest < spec.strength) continue;
+        double low = end * (k - 1) / kSteps, high = here;
+        for (int b = 0; b < 40; ++b) {
+          const double middle = 0.5 * (low + high);
+          (strength(middle) < spec.strength ? low : high) = middle;
         }
+        found = high;
       }
-      if (found == 0)
-        throw TooWeak(fmt::format(
-            "{} shifts these observables by {:.2g} standard uncertainties at most within its prior "
-            "range, not by {:g}; more --repeats, or less --noise, make it stronger",
-            name, strongest, spec.strength));
-      return found;
-    };
-    // The surface of the design is known from one run in each place; where it first seems strong enough,
-    // chance has helped. So the effect is simulated there, and without it, and looked for again.
-    double found = crossing();
-    for (int look = 0; look < kLooks; ++look) {
-      std::vector<PlannedRun> here;
-      there.at[0] = found;
-      for (int k = 0; k < kRunsOfLook; ++k) {
-        const std::uint64_t at =
-            kLookSeeds + spec.seed * kSeedsOfOneTwin + static_cast<std::uint64_t>(looked++);
-        here.push_back({{twin.truth.at.base, {there}}, at});
-        if (look == 0) here.push_back({{twin.truth.at.base, {}}, at});
-      }
-      learn_from(here, hidden);
-      surface = LearntModel(space, names, learnt);
-      found = crossing();
     }
+    if (found == 0)
+      throw TooWeak(
+          fmt::format("{} shifts these observables by {:.2g} standard uncertainties at most within its prior "
+                      "range, not by "
+                      "{:g}; more --repeats, or less --noise, make it stronger",
+                      name, strongest, spec.strength));
     twin.truth.detectability.push_back(strength(found));
     twin.truth.at.effects.push_back(there);
   }

@@ -39,8 +39,8 @@ struct TooWeak : std::runtime_error {
 /// amplitude at which the effect shifts the model's observables by `strength` standard uncertainties (root
 /// mean square, after the base parameters have made up for what they can), simulates the model's experiments
 /// with seeds that no diagnosis uses, and adds errors of measurement. `design` does the simulations that tell
-/// roughly how strong an effect is, `hidden` those near the truth that tell it well, and those of the truth.
-/// Throws TooWeak; std::runtime_error; what these throw.
+/// how strong an effect is, `hidden` those of the truth. Throws TooWeak; std::runtime_error; what these
+/// throw.
 Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::filesystem::path& asset_dir,
                const RunThrough& design, const RunThrough& hidden);
 

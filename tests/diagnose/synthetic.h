@@ -65,9 +65,8 @@ class SyntheticWorld {
     for (std::size_t e = 0; e < space.effects.size(); ++e)
       for (int k = 0; k < 10; ++k) {
         const double low = space.effects[e].lowest();
-        const double x =
-            low < 0 ? std::pow((k / 2 + 1) / 5.0, 2) * (k % 2 == 0 ? 1 : low) : std::pow((k + 1) / 10.0, 2);
-        add({base(), {{e, Eigen::VectorXd::Constant(1, x)}}});
+        const double x = low + (1 - low) * (k + 1) / 10.0;
+        if (x != 0) add({base(), {{e, Eigen::VectorXd::Constant(1, x)}}});
       }
     return runs;
   }

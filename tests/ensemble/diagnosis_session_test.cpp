@@ -169,22 +169,6 @@ TEST_F(Session, TwinsHaveTheStrengthAskedForAndUseNoSeedOfTheDesign) {
   EXPECT_EQ(values.find("twisting"), std::string::npos);
 }
 
-TEST(Design, AmplitudesReachBothEndsAndAreCloserWhereSmall) {
-  CandidateEffect effect{"shift", "shift", 0, {{"effects.shift.size", "", -0.5, 1}}, {"one"}};
-  for (const int count : {6, 9, 14}) {
-    std::vector<double> all = amplitudes_of(effect, count);
-    ASSERT_EQ(all.size(), static_cast<std::size_t>(count));
-    std::sort(all.begin(), all.end());
-    EXPECT_DOUBLE_EQ(all.front(), -0.5);
-    EXPECT_DOUBLE_EQ(all.back(), 1);
-    EXPECT_TRUE(std::none_of(all.begin(), all.end(), [](double a) { return a == 0; }));
-    EXPECT_LT(all[static_cast<std::size_t>(count) / 2 + 1] - all[static_cast<std::size_t>(count) / 2],
-              all[static_cast<std::size_t>(count) - 1] - all[static_cast<std::size_t>(count) - 2]);
-  }
-  effect.axes[0] = {"effects.shift.size", "", 0, 2};
-  EXPECT_EQ(amplitudes_of(effect, 4), (std::vector<double>{0.0625, 0.25, 0.5625, 1}));
-}
-
 TEST_F(Session, ModelFilesAreChecked) {
   const auto error = [&](const std::string& text) {
     write_text_file(folder / "bad.yaml", text);
