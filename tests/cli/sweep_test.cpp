@@ -48,6 +48,12 @@ class SweepCli : public testing::Test {
         lines.push_back(std::regex_replace(line, std::regex("(,done,[^,]*,)[0-9.]+"), "$1"));
     return lines;
   }
+  // A sweep of one run that takes a while: its file.
+  std::string sweep_of_one_run(const std::string& mass_kg) {
+    write("sweep.yaml", head + "seeds: [1]\nset: {experiment.mass_kg: " + mass_kg +
+                            "}\ndesign: {type: list, points: [{material.mu: 0.2}]}\n");
+    return in_folder("sweep.yaml");
+  }
   // Starts the program in the background.
   Background start(const std::vector<std::string>& words, const std::string& log = "log") const {
     return {words, folder / log};
@@ -82,10 +88,7 @@ TEST_F(SweepCli, KilledAtAnyMomentItGoesOnToTheSameStore) {
 
 // What a killed sweep had simulated of a long run is not simulated again.
 TEST_F(SweepCli, KilledInTheMiddleOfARunItGoesOnFromItsCheckpoint) {
-  write("sweep.yaml", head +
-                          "seeds: [1]\nset: {experiment.mass_kg: 4}\n"
-                          "design: {type: list, points: [{material.mu: 0.2}]}\n");
-  const std::string sweep = in_folder("sweep.yaml");
+  const std::string sweep = sweep_of_one_run("4");
   ASSERT_EQ(call("sweep " + sweep + " --checkpoint-minutes 0 --store " + in_folder("whole.sqlite")).code, 0);
   std::set<std::string> goes_on;  // times from which it went on
   bool ended = false;
@@ -145,10 +148,7 @@ TEST_F(SweepCli, InterruptGivesBackAndSaysHowToGoOn) {
 
 // Long before the first checkpoint that its time would bring.
 TEST_F(SweepCli, InterruptedInTheMiddleOfARunItGoesOnFromThere) {
-  write("sweep.yaml", head +
-                          "seeds: [1]\nset: {experiment.mass_kg: 10}\n"
-                          "design: {type: list, points: [{material.mu: 0.2}]}\n");
-  const std::string sweep = in_folder("sweep.yaml");
+  const std::string sweep = sweep_of_one_run("10");
   ASSERT_EQ(call("sweep " + sweep + " --store " + in_folder("whole.sqlite")).code, 0);
   const fs::path work = folder / "store.sqlite.work";
   Background run = start({"sweep", sweep, "--store", in_folder("store.sqlite")});
