@@ -223,6 +223,15 @@ bool is_effect(const Judgement& j) {
   return !j.hypothesis.effects.empty() && !j.hypothesis.unknown;
 }
 
+void sort_by_probability(std::vector<Judgement>& judgements) {
+  std::stable_sort(judgements.begin(), judgements.end(),
+                   [](const auto& a, const auto& b) { return a.probability > b.probability; });
+}
+
+bool explains(const Judgement& j) {
+  return !j.refuted && j.gap.p > kFitsAbove;
+}
+
 bool holds(const Hypothesis& larger, const Hypothesis& smaller) {
   return std::includes(larger.effects.begin(), larger.effects.end(), smaller.effects.begin(),
                        smaller.effects.end());
@@ -238,14 +247,14 @@ DiagnosisVerdict verdict_of(const Diagnosis& d) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (all[k].hypothesis.unknown || is_effect(all[k])) leading = std::max(leading, all[k].probability);
     if (all[k].hypothesis.unknown) unknown = all[k].probability;
-    if (first == all.size() && is_effect(all[k]) && all[k].gap.p > kFitsAbove) first = k;
+    if (first == all.size() && is_effect(all[k]) && explains(all[k])) first = k;
   }
   // What re-calibration leaves may still be chance: anything else must be much more probable.
   if (d.calibration.probability * kApartBy > leading) return {Kind::calibration, {}};
   if (first == all.size() || unknown > all[first].probability) return {Kind::unknown, {}};
   DiagnosisVerdict verdict{Kind::effect, {first}};
   for (std::size_t k = 0; k < all.size(); ++k)
-    if (k != first && is_effect(all[k]) && all[k].gap.p > kFitsAbove &&
+    if (k != first && is_effect(all[k]) && explains(all[k]) &&
         !holds(all[k].hypothesis, all[first].hypothesis) &&
         all[k].probability * kApartBy > all[first].probability)
       verdict.named.push_back(k);
@@ -256,7 +265,9 @@ DiagnosisVerdict verdict_of(const Diagnosis& d) {
 }  // namespace
 
 LearntModel::LearntModel(const ModelSpace& space, const std::vector<std::string>& experiments,
-                         const DesignRuns& runs) {
+                         const DesignRuns& runs, std::vector<double> widening)
+    : widening_(std::move(widening)) {
+  widening_.resize(experiments.size(), 1.0);
   for (std::size_t e = 0; e < experiments.size(); ++e) surfaces_.emplace_back(space, experiments[e], runs[e]);
 }
 
@@ -264,11 +275,12 @@ SurfacePrediction LearntModel::at(const ModelPoint& point) const {
   Eigen::Index n = 0, first = 0;
   for (const ResponseSurface& surface : surfaces_) n += surface.outputs();
   SurfacePrediction all{Eigen::VectorXd(n), Eigen::MatrixXd::Zero(n, n)};
-  for (const ResponseSurface& surface : surfaces_) {
-    const SurfacePrediction here = surface.at(point);
-    all.mean.segment(first, surface.outputs()) = here.mean;
-    all.covariance.block(first, first, surface.outputs(), surface.outputs()) = here.covariance;
-    first += surface.outputs();
+  for (std::size_t e = 0; e < surfaces_.size(); ++e) {
+    const SurfacePrediction here = surfaces_[e].at(point);
+    const Eigen::Index width = surfaces_[e].outputs();
+    all.mean.segment(first, width) = here.mean;
+    all.covariance.block(first, first, width, width) = widening_[e] * here.covariance;
+    first += width;
   }
   return all;
 }
@@ -344,8 +356,7 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
     j.signature = rms(signature(space, model, d.covariance, j.best));
     if (j.hypothesis.effects.empty() && !j.hypothesis.unknown) d.calibration.probability = j.probability;
   }
-  std::stable_sort(d.judgements.begin(), d.judgements.end(),
-                   [](const auto& a, const auto& b) { return a.probability > b.probability; });
+  sort_by_probability(d.judgements);
 
   std::vector<Eigen::VectorXd> signatures;
   for (const Judgement& one : ones) {
@@ -362,6 +373,20 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
     }
   d.verdict = verdict_of(d);
   return d;
+}
+
+void refute(Diagnosis& d, std::size_t judgement, const Gap& gap) {
+  Judgement& refuted = d.judgements[judgement];
+  const double rest = 1 - refuted.probability;
+  refuted.gap = gap;
+  refuted.refuted = true;
+  refuted.probability = 0;
+  for (Judgement& j : d.judgements) {
+    if (rest > 0) j.probability /= rest;
+    if (j.hypothesis.effects.empty() && !j.hypothesis.unknown) d.calibration.probability = j.probability;
+  }
+  sort_by_probability(d.judgements);
+  d.verdict = verdict_of(d);
 }
 
 HeldOut held_out(const ModelSpace& space, const Diagnosis& d, const LearntModel& model,

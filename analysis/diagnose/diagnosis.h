@@ -51,6 +51,7 @@ struct Judgement {
   double probability = 0;  ///< of this hypothesis among all
   ModelPoint best;         ///< most likely
   Gap gap;                 ///< there
+  bool refuted = false;    ///< full simulations there do not give the data; the gap is theirs
   struct Interval {
     double low, middle, high;
   };
@@ -101,14 +102,17 @@ using DesignRuns = std::vector<std::vector<DesignRun>>;
 /// The model as learnt from simulations.
 class LearntModel {
  public:
-  /// Throws std::invalid_argument, see ResponseSurface.
-  LearntModel(const ModelSpace& space, const std::vector<std::string>& experiments, const DesignRuns& runs);
+  /// `widening`: by experiment, of the surfaces' covariance, see forecast.h; empty: 1. Throws
+  /// std::invalid_argument, see ResponseSurface.
+  LearntModel(const ModelSpace& space, const std::vector<std::string>& experiments, const DesignRuns& runs,
+              std::vector<double> widening = {});
   /// Of all values, in their order.
   SurfacePrediction at(const ModelPoint& point) const;
   std::vector<const ResponseSurface*> surfaces() const;
 
  private:
   std::vector<ResponseSurface> surfaces_;
+  std::vector<double> widening_;
 };
 
 /// Points drawn from what the data leave open of a hypothesis, spread wider than it is by a half: where it is
@@ -117,6 +121,10 @@ std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Judgement&
 
 /// Finds, re-calibrates and names.
 Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model);
+
+/// Full simulations at a judgement's best parameters leave `gap` and contradict it: its probability goes to
+/// the others in proportion. Says anew what is named; the order of judgements changes.
+void refute(Diagnosis& diagnosis, std::size_t judgement, const Gap& gap);
 
 /// Every experiment left out in turn; with one experiment every section, else every number.
 HeldOut held_out(const ModelSpace& space, const Diagnosis& diagnosis, const LearntModel& model,

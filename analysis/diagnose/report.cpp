@@ -35,6 +35,7 @@ Json json_of(const ModelSpace& space, const Judgement& j) {
   json["log_evidence"] = j.evidence.log_evidence;
   json["prior"] = j.hypothesis.prior;
   json["gap"] = json_of(j.gap);
+  json["refuted"] = j.refuted;
   json["signature"] = j.signature;
   for (std::size_t k = 0; k < space.base.size(); ++k)
     json["parameters"][space.base[k].key] = json_of(j.base[k]);
@@ -180,8 +181,9 @@ std::string candidates_table(const DiagnosisOutcome& o) {
     rows += fmt::format(
         "<tr><td class=\"word\">{}</td><td>{}</td><td>{} on {}</td><td>{}</td><td "
         "class=\"word\">{}</td></tr>\n",
-        html_escaped(name_of(o.space, j.hypothesis)), decimals_text(j.probability, 3),
-        number_text(j.gap.chi2), j.gap.freedom, p_text(j.gap.p), html_escaped(values.empty() ? "–" : values));
+        html_escaped(name_of(o.space, j.hypothesis)),
+        j.refuted ? "refuted by full simulations" : decimals_text(j.probability, 3), number_text(j.gap.chi2),
+        j.gap.freedom, p_text(j.gap.p), html_escaped(values.empty() ? "–" : values));
   }
   return fmt::format(
       "<h2>What might be missing</h2>\n<p>Every model is fitted to all numbers, its parameters and the "

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -19,11 +20,13 @@ constexpr double kHat = 1;
 constexpr int kHats = 5;           // along an amplitude, each a sixth of the range wide to either side
 constexpr double kConstant = 1e4;  // of the scatter
 
-// Sizes that a group may have, over the scatter; half a unit of a normal prior on their logarithm each way.
+// Sizes that a group may have, over the scatter; normal prior on their logarithm. Of the product of two
+// effects its mean is that of theirs.
 constexpr std::array<double, 11> kSizes{0.02, 0.1, 0.3, 0.7, 1.5, 3, 6, 15, 50, 200, 1000};
 constexpr double kLogSizeMean = 0, kLogSizeStd = 2;
 constexpr double kLogHatMean = -3, kLogHatStd = 1.5;  // hats are for what polynomials cannot do
 constexpr int kMostSweeps = 6;
+constexpr double kTiny = 1e-12;  // against rounding: of what is above 0 by its nature
 
 // 1 at the knot, 0 from its neighbours on; knots of negative amplitudes are negative.
 double hat(double amplitude, int knot) {
@@ -47,11 +50,12 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
   const std::size_t p = space.base.size();
   const std::vector<int> none(p, 0);
   const auto base = [&](double prior, std::initializer_list<std::size_t> axes) {
-    Term term{0, -1, prior, none};
+    Term term{0, prior, none};
     for (const std::size_t axis : axes) ++term.base_power[axis];
     terms_.push_back(std::move(term));
   };
-  base(0, {});  // the constant; its prior is its own
+  base(kConstant, {});
+  terms_.back().group = -1;
   for (std::size_t i = 0; i < p; ++i) {
     base(kBase1, {i});
     base(kBase2, {i, i});
@@ -71,7 +75,7 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
     if (!acts_[e] || !simulated[e]) continue;
     const int effect = static_cast<int>(e), group = effect + 1;
     const auto add = [&](double prior, int order, int other) {
-      terms_.push_back({group, -1, prior, none, effect, order, other});
+      terms_.push_back({group, prior, none, effect, order, other});
     };
     add(kEffect1, 1, 0);
     add(kEffect2, 2, 0);
@@ -92,7 +96,8 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
       add(kWithOther2, 2, static_cast<int>(k));
     }
   }
-  for (const auto& [a, b] : together) terms_.push_back({a + 1, b + 1, kTogether, none, a, 1, 0, b});
+  groups_ = 1 + 2 * static_cast<int>(space.effects.size());
+  for (const auto& [a, b] : together) terms_.push_back({groups_++, kTogether, none, a, 1, 0, b});
   known_pairs_.assign(together.begin(), together.end());
 }
 
@@ -125,70 +130,96 @@ void ResponseSurface::values(const ModelPoint& point, std::vector<Eigen::Index>&
   }
 }
 
-ResponseSurface::Fit ResponseSurface::fit(const Eigen::MatrixXd& features, const Eigen::VectorXd& y) const {
-  const Eigen::Index n = features.rows(), k = features.cols();
-  const Eigen::MatrixXd square = features.transpose() * features;
-  const Eigen::VectorXd product = features.transpose() * y;
-  const double yy = y.squaredNorm();
-  Eigen::VectorXd size = Eigen::VectorXd::Ones(groups_), prior(k);
-  Eigen::LLT<Eigen::MatrixXd> factor;
-  double misfit = 0;
-  // Logarithm of the marginal likelihood with the scatter's variance at its best, times the prior of sizes.
-  const auto evaluate = [&] {
-    double log_density = 0;
-    for (Eigen::Index t = 0; t < k; ++t) {
-      const Term& term = terms_[static_cast<std::size_t>(t)];
-      const double first = size[term.group];
-      prior[t] = term.prior == 0         ? kConstant
-                 : term.second_group < 0 ? term.prior * first
-                                         : term.prior * std::sqrt(first * size[term.second_group]);
-    }
-    Eigen::MatrixXd a = square;
-    a.diagonal() += prior.cwiseAbs2().cwiseInverse();
-    factor.compute(a);
-    misfit = std::max(yy - product.dot(factor.solve(product)), 1e-12 * yy + 1e-300);
-    log_density -= prior.array().log().sum();
-    log_density -= factor.matrixLLT().diagonal().array().log().sum();
-    log_density -= 0.5 * static_cast<double>(n) * std::log(misfit);
+// The size of one group after the other is put to its best. With V the group's terms at the runs times their
+// priors and Q the inverse of the runs' covariance, a change d of the size's square changes that covariance
+// by d V V': its determinant by the product of 1 + d l over the eigenvalues l of V' Q V, and what the
+// likelihood has of y the same way.
+ResponseSurface::Fit ResponseSurface::fit(const Features& features, const Eigen::VectorXd& y) const {
+  const Eigen::Index n = features.all.rows(), k = features.all.cols();
+  Eigen::VectorXd size = Eigen::VectorXd::Ones(groups_);
+  const auto factor = [&] {
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(n, n, kConstant * kConstant);
+    covariance.diagonal().array() += 1;
     for (Eigen::Index g = 0; g < groups_; ++g) {
-      const bool hats = g > static_cast<Eigen::Index>(acts_.size());
-      const double z =
-          (std::log(size[g]) - (hats ? kLogHatMean : kLogSizeMean)) / (hats ? kLogHatStd : kLogSizeStd);
-      log_density -= 0.5 * z * z;
+      const Eigen::MatrixXd& v = features.groups[static_cast<std::size_t>(g)].at_runs;
+      if (v.cols() > 0) covariance.selfadjointView<Eigen::Lower>().rankUpdate(v, size[g] * size[g]);
     }
-    return log_density;
+    return Eigen::LLT<Eigen::MatrixXd>(covariance);
   };
-  std::vector<bool> used(static_cast<std::size_t>(groups_), false);
-  for (const Term& term : terms_) used[static_cast<std::size_t>(term.group)] = true;
-  double best = evaluate();
+  const double least = kTiny * y.squaredNorm() + 1e-300;
   bool moved = true;
   for (int sweep = 0; sweep < kMostSweeps && moved; ++sweep) {
     moved = false;
+    Eigen::MatrixXd q = factor().solve(Eigen::MatrixXd::Identity(n, n));
+    Eigen::VectorXd qy = q * y;
+    double misfit = y.dot(qy);
     for (Eigen::Index g = 0; g < groups_; ++g) {
-      if (!used[static_cast<std::size_t>(g)]) continue;
+      const Eigen::MatrixXd& v = features.groups[static_cast<std::size_t>(g)].at_runs;
+      if (v.cols() == 0) continue;
+      Eigen::MatrixXd qv = q * v;
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(v.transpose() * qv);
+      const Eigen::ArrayXd roots = eigen.eigenvalues().cwiseMax(0.0),
+                           along = (eigen.eigenvectors().transpose() * (v.transpose() * qy)).array();
+      const auto shrunk = [&](double change) -> Eigen::ArrayXd {
+        return change / (1 + change * roots).max(kTiny);
+      };
+      const auto misfit_at = [&](double change) {
+        return std::max(misfit - (shrunk(change) * along.square()).sum(), least);
+      };
       const double before = size[g];
-      double chosen = before;
-      for (const double candidate : kSizes) {
-        size[g] = candidate;
-        const double here = evaluate();
-        if (here > best + 1e-9) {
+      const Eigen::Index effects = static_cast<Eigen::Index>(acts_.size()), pair = g - 1 - 2 * effects;
+      const bool hats = pair < 0 && g > effects;
+      double usual = hats ? kLogHatMean : kLogSizeMean;
+      if (pair >= 0) {
+        const auto& [a, b] = known_pairs_[static_cast<std::size_t>(pair)];
+        usual = 0.5 * std::log(size[a + 1] * size[b + 1]);
+      }
+      const double spread = hats ? kLogHatStd : kLogSizeStd;
+      // Logarithm of the marginal likelihood with the scatter's variance at its best, times the size's prior.
+      const auto log_density = [&](double here) {
+        const double change = here * here - before * before, z = (std::log(here) - usual) / spread;
+        return -0.5 * ((1 + change * roots).max(kTiny).log().sum() +
+                       static_cast<double>(n) * std::log(misfit_at(change)) + z * z);
+      };
+      double best = log_density(before), chosen = before;
+      for (const double candidate : kSizes)
+        if (const double here = log_density(candidate); here > best + 1e-9) {
           best = here;
           chosen = candidate;
-          moved = moved || candidate != before;
         }
-      }
+      if (chosen == before) continue;
+      moved = true;
       size[g] = chosen;
+      const double change = chosen * chosen - before * before;
+      misfit = misfit_at(change);
+      qv = (qv * eigen.eigenvectors()).eval();
+      const Eigen::MatrixXd lost = qv * shrunk(change).matrix().asDiagonal();
+      q.noalias() -= lost * qv.transpose();
+      qy.noalias() -= lost * along.matrix();
     }
   }
-  evaluate();
+  const Eigen::LLT<Eigen::MatrixXd> last = factor();
+  Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(k, k),
+                  with_runs = Eigen::MatrixXd::Zero(n, k);  // covariances
+  for (Eigen::Index t = 0; t < k; ++t)
+    if (terms_[static_cast<std::size_t>(t)].group < 0) {
+      prior(t, t) = kConstant * kConstant;
+      with_runs.col(t) = prior(t, t) * features.all.col(t);
+    }
+  for (Eigen::Index g = 0; g < groups_; ++g) {
+    const Group& group = features.groups[static_cast<std::size_t>(g)];
+    const Eigen::VectorXd std = size[g] * group.prior;
+    prior(group.terms, group.terms).diagonal() = std.cwiseAbs2();
+    with_runs(Eigen::all, group.terms) = size[g] * group.at_runs * std.asDiagonal();
+  }
+  const Eigen::MatrixXd gain = last.solve(with_runs).transpose();
   Fit fit;
-  fit.scatter = misfit / static_cast<double>(n);
-  fit.mean = factor.solve(product);
-  const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(k, k));
-  fit.covariance = fit.scatter * inverse;
+  fit.scatter = std::max(y.dot(last.solve(y)), least) / static_cast<double>(n);
+  fit.mean = gain * y;
+  fit.covariance = fit.scatter * (prior - gain * with_runs);
   fit.size = size;
-  fit.residual = y - features * fit.mean;
-  const Eigen::VectorXd leverage = (features * inverse).cwiseProduct(features).rowwise().sum();
+  fit.residual = y - features.all * fit.mean;
+  const Eigen::VectorXd leverage = features.all.cwiseProduct(gain.transpose()).rowwise().sum();
   fit.freedom = std::max(static_cast<double>(n) - leverage.sum(), 1.0);
   double sum = 0;
   for (Eigen::Index i = 0; i < n; ++i)
@@ -201,7 +232,6 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
                                  const std::vector<DesignRun>& runs) {
   for (const CandidateEffect& effect : space.effects) acts_.push_back(effect.acts_in(experiment));
   if (acts_.size() > 64) throw std::invalid_argument("at most 64 effects");
-  groups_ = 1 + 2 * static_cast<int>(space.effects.size());
   const auto n = static_cast<Eigen::Index>(runs.size());
   const auto plain =
       std::count_if(runs.begin(), runs.end(), [](const auto& r) { return r.at.effects.empty(); });
@@ -211,14 +241,27 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
                     plain, least_base_runs(space.base.size())));
   make_terms(space, runs);
   const Eigen::Index p = runs.front().outputs.size(), k = static_cast<Eigen::Index>(terms_.size());
-  Eigen::MatrixXd features = Eigen::MatrixXd::Zero(n, k), y(n, p);
+  Features features{Eigen::MatrixXd::Zero(n, k), {}};
+  Eigen::MatrixXd y(n, p);
   std::vector<Eigen::Index> which;
   std::vector<double> value;
   for (Eigen::Index i = 0; i < n; ++i) {
     const DesignRun& run = runs[static_cast<std::size_t>(i)];
     values(run.at, which, value);
-    for (std::size_t t = 0; t < which.size(); ++t) features(i, which[t]) = value[t];
+    for (std::size_t t = 0; t < which.size(); ++t) features.all(i, which[t]) = value[t];
     y.row(i) = run.outputs.transpose();
+  }
+  for (int g = 0; g < groups_; ++g) {
+    std::vector<double> prior;
+    Group group;
+    for (Eigen::Index t = 0; t < k; ++t)
+      if (const Term& term = terms_[static_cast<std::size_t>(t)]; term.group == g) {
+        group.terms.push_back(t);
+        prior.push_back(term.prior);
+      }
+    group.prior = Eigen::Map<Eigen::VectorXd>(prior.data(), static_cast<Eigen::Index>(prior.size()));
+    group.at_runs = features.all(Eigen::all, group.terms) * group.prior.asDiagonal();
+    features.groups.push_back(std::move(group));
   }
   centre_ = y.colwise().mean();
   const Eigen::MatrixXd off = y.rowwise() - centre_.transpose();
@@ -244,9 +287,9 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
   const Eigen::VectorXd root = eigen.eigenvalues().cwiseMax(1e-6).cwiseSqrt();
   const Eigen::VectorXd natural = unit.cwiseProduct(deviation);
   to_outputs_ = natural.asDiagonal() * eigen.eigenvectors() * root.asDiagonal();
-  const Eigen::MatrixXd back = root.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose() *
-                               natural.cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd combinations = off * back.transpose();
+  to_combinations_ = root.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose() *
+                     natural.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd combinations = off * to_combinations_.transpose();
   Eigen::VectorXd variance(p);
   leave_one_out_.resize(p);
   for (Eigen::Index j = 0; j < p; ++j) {
@@ -259,18 +302,26 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
   scatter_ = to_outputs_ * variance.asDiagonal() * to_outputs_.transpose();
 }
 
-// Of products of effects that were never simulated together.
-double ResponseSurface::pair_variance(const ModelPoint& point, const Fit& fit) const {
-  double variance = 0;
-  for (const EffectAt& a : point.effects)
-    for (const EffectAt& b : point.effects) {
-      if (a.effect >= b.effect || !acts_[a.effect] || !acts_[b.effect]) continue;
-      const std::pair<int, int> pair(static_cast<int>(a.effect), static_cast<int>(b.effect));
-      if (std::find(known_pairs_.begin(), known_pairs_.end(), pair) != known_pairs_.end()) continue;
-      const double product = kTogether * a.amplitude() * b.amplitude();
-      variance += fit.scatter * product * product * fit.size[pair.first + 1] * fit.size[pair.second + 1];
-    }
-  return variance;
+// Of products of effects that were never simulated together; over the scatter.
+double ResponseSurface::pair_covariance(const ModelPoint& first, const ModelPoint& second,
+                                        const Fit& fit) const {
+  const auto products = [&](const ModelPoint& point) {
+    std::map<std::pair<int, int>, double> all;
+    for (const EffectAt& a : point.effects)
+      for (const EffectAt& b : point.effects) {
+        if (a.effect >= b.effect || !acts_[a.effect] || !acts_[b.effect]) continue;
+        const std::pair<int, int> pair(static_cast<int>(a.effect), static_cast<int>(b.effect));
+        if (std::find(known_pairs_.begin(), known_pairs_.end(), pair) == known_pairs_.end())
+          all[pair] = kTogether * a.amplitude() * b.amplitude();
+      }
+    return all;
+  };
+  const auto there = products(second);
+  double sum = 0;
+  for (const auto& [pair, product] : products(first))
+    if (const auto other = there.find(pair); other != there.end())
+      sum += product * other->second * fit.size[pair.first + 1] * fit.size[pair.second + 1];
+  return sum;
 }
 
 SurfacePrediction ResponseSurface::at(const ModelPoint& point) const {
@@ -290,9 +341,39 @@ SurfacePrediction ResponseSurface::at(const ModelPoint& point) const {
       square += value[s] * (2 * row + fit.covariance(which[s], which[s]) * value[s]);
     }
     mean[j] = sum;
-    variance[j] = square + pair_variance(point, fit);
+    variance[j] = square + fit.scatter * pair_covariance(point, point, fit);
   }
   return {centre_ + to_outputs_ * mean, to_outputs_ * variance.asDiagonal() * to_outputs_.transpose()};
+}
+
+std::vector<Forecast> ResponseSurface::forecasts(const std::vector<DesignRun>& runs) const {
+  const auto n = static_cast<Eigen::Index>(runs.size());
+  Eigen::MatrixXd features = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(terms_.size()));
+  Eigen::MatrixXd found(n, outputs());
+  std::vector<Eigen::Index> which;
+  std::vector<double> value;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const DesignRun& run = runs[static_cast<std::size_t>(i)];
+    values(run.at, which, value);
+    for (std::size_t t = 0; t < which.size(); ++t) features(i, which[t]) = value[t];
+    found.row(i) = (to_combinations_ * (run.outputs - centre_)).transpose();
+  }
+  std::vector<Forecast> all;
+  for (std::size_t j = 0; j < fits_.size(); ++j) {
+    const Fit& fit = fits_[j];
+    Eigen::MatrixXd unsure = features * fit.covariance * features.transpose() / fit.scatter;
+    for (Eigen::Index a = 0; a < n; ++a)
+      for (Eigen::Index b = 0; b < n; ++b)
+        unsure(a, b) +=
+            pair_covariance(runs[static_cast<std::size_t>(a)].at, runs[static_cast<std::size_t>(b)].at, fit);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(unsure);
+    const Eigen::VectorXd error = eigen.eigenvectors().transpose() *
+                                  (found.col(static_cast<Eigen::Index>(j)) - features * fit.mean) /
+                                  std::sqrt(fit.scatter);
+    for (Eigen::Index i = 0; i < n; ++i)
+      all.push_back({std::max(eigen.eigenvalues()[i], 0.0), error[i] * error[i]});
+  }
+  return all;
 }
 
 }  // namespace scree

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/diagnose/forecast.h"
 #include "analysis/diagnose/model_space.h"
 
 namespace scree {
@@ -45,13 +46,15 @@ class ResponseSurface {
   /// combination of outputs; near 1 if the polynomials are good enough.
   const Eigen::VectorXd& leave_one_out() const { return leave_one_out_; }
 
+  /// How well it foretells runs that it has not learnt from, each of a seed of its own.
+  std::vector<Forecast> forecasts(const std::vector<DesignRun>& runs) const;
+
   /// Fewest runs without effects for so many base parameters.
   static int least_base_runs(std::size_t base_parameters);
 
  private:
   struct Term {                   // a monomial
-    int group;                    // whose size its prior has: 0: base, 1 + k: effect k, then hats of effects
-    int second_group;             // -1, or that of the other effect of a product
+    int group;                    // whose size its prior has: 0: base; effects; their hats; pairs; -1: none
     double prior;                 // standard deviation over the size
     std::vector<int> base_power;  // by base axis
     int effect = -1, power = 0;   // of the amplitude
@@ -72,16 +75,26 @@ class ResponseSurface {
     Eigen::VectorXd residual;    // by run
     double leave_one_out;
   };
-  Fit fit(const Eigen::MatrixXd& features, const Eigen::VectorXd& y) const;
-  double pair_variance(const ModelPoint& point, const Fit& fit) const;
+  struct Group {  // of terms
+    std::vector<Eigen::Index> terms;
+    Eigen::VectorXd prior;    // of them
+    Eigen::MatrixXd at_runs;  // the terms at the runs, times their priors
+  };
+  struct Features {
+    Eigen::MatrixXd all;  // a row a run, a column a term
+    std::vector<Group> groups;
+  };
+  Fit fit(const Features& features, const Eigen::VectorXd& y) const;
+  double pair_covariance(const ModelPoint& first, const ModelPoint& second, const Fit& fit) const;
 
   std::vector<bool> acts_;                        // by effect of the space
   std::vector<std::pair<int, int>> known_pairs_;  // of effects that were simulated together
   int groups_ = 1;
   std::vector<Term> terms_;
-  std::vector<Fit> fits_;       // by combination
-  Eigen::VectorXd centre_;      // of outputs
-  Eigen::MatrixXd to_outputs_;  // outputs - centre = to_outputs * combinations
+  std::vector<Fit> fits_;            // by combination
+  Eigen::VectorXd centre_;           // of outputs
+  Eigen::MatrixXd to_outputs_;       // outputs - centre = to_outputs * combinations
+  Eigen::MatrixXd to_combinations_;  // its inverse
   Eigen::MatrixXd scatter_;
   Eigen::VectorXd leave_one_out_;
 };

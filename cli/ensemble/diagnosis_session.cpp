@@ -7,6 +7,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "analysis/diagnose/words.h"
 #include "cli/ensemble/design.h"
 #include "cli/ensemble/run_request.h"
 
@@ -58,6 +59,11 @@ bool moved(const ModelPoint& a, const ModelPoint& b) {
   return most > kMoved;
 }
 
+// Of a model, that gave what was measured.
+struct TooFewRuns : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 bool same(const DiagnosisVerdict& a, const DiagnosisVerdict& b, const Diagnosis& of_a,
           const Diagnosis& of_b) {
   if (a.kind != b.kind || a.named.size() != b.named.size()) return false;
@@ -72,6 +78,25 @@ const Judgement* best_effect(const Diagnosis& d) {
   for (const Judgement& j : d.judgements)
     if (!j.hypothesis.effects.empty()) return &j;
   return nullptr;
+}
+
+// The first of those that are named.
+const Judgement* named_first(const Diagnosis& d) {
+  return d.verdict.named.empty() ? nullptr : &d.judgements[d.verdict.named.front()];
+}
+
+// The leading effect or pair, its rivals, and what would be named, which may be another: a hypothesis of
+// which little was simulated explains almost anything.
+std::vector<const Judgement*> worth_simulating(const Diagnosis& d) {
+  std::vector<const Judgement*> all;
+  for (const Judgement& j : d.judgements)
+    if (!j.hypothesis.effects.empty() && all.size() <= kMostRivals &&
+        (all.empty() || j.probability * kRivalBy > all.front()->probability))
+      all.push_back(&j);
+  if (const Judgement* named = named_first(d);
+      named != nullptr && std::find(all.begin(), all.end(), named) == all.end())
+    all.push_back(named);
+  return all;
 }
 
 int fitted(const ModelSpace& space, const Judgement& j) {
@@ -193,6 +218,7 @@ DiagnosisSession::DiagnosisSession(const DiagnosisModel& model, JoinedData data,
       space_(space_of(model, data_.experiments, without)) {
   design_ = in_every_experiment(design_of(space_, model.simulations));
   learnt_.resize(data_.experiments.size());
+  forecasts_.resize(data_.experiments.size());
   failure_.resize(data_.experiments.size());
   everything_.resize(data_.experiments.size());
 }
@@ -206,9 +232,9 @@ std::vector<ExperimentRuns> DiagnosisSession::in_every_experiment(
 }
 
 int DiagnosisSession::most_further() const {
-  // A round simulates the calibrated model and the leading effect; the first its rivals, too; the end what is
-  // named.
-  const int points = 2 * kMostRounds + static_cast<int>(kMostRivals) + 1;
+  // A round simulates the calibrated model, the leading effect, its rivals, and what would be named; the end
+  // what is named.
+  const int points = (3 + static_cast<int>(kMostRivals)) * kMostRounds + 1;
   return static_cast<int>(design_.size()) *
          (points * model_.simulations.check + kExplored * model_.simulations.effect);
 }
@@ -275,10 +301,9 @@ SimulatedModel DiagnosisSession::simulate(const ModelPoint& point, const RunThro
     simulated.runs = std::min(simulated.runs, static_cast<int>(count));
     const Eigen::Index width = static_cast<Eigen::Index>(data_.measured.of(e).size());
     if (count < 2)
-      throw std::runtime_error(
-          fmt::format("{}: {} of {} simulations of the fitted model give the numbers measured{}",
-                      data_.experiments[e].name, count, model_.simulations.check,
-                      failure_[e].empty() ? "" : "; the last that failed: " + failure_[e]));
+      throw TooFewRuns(fmt::format("{}: {} of {} simulations of the fitted model give the numbers measured{}",
+                                   data_.experiments[e].name, count, model_.simulations.check,
+                                   failure_[e].empty() ? "" : "; the last that failed: " + failure_[e]));
     Eigen::MatrixXd y(count, width);
     for (Eigen::Index k = 0; k < count; ++k)
       y.row(k) = learnt_[e][before[e] + static_cast<std::size_t>(k)].outputs.transpose();
@@ -345,6 +370,50 @@ std::vector<NextMeasurement> DiagnosisSession::tell_apart(const DiagnosisOutcome
   return all;
 }
 
+// Means over the simulations of the design.
+SimulatedModel DiagnosisSession::nominal_of_design() const {
+  SimulatedModel nominal;
+  const auto n = static_cast<Eigen::Index>(data_.measured.values.size());
+  nominal.at.base = space_.nominal();
+  nominal.runs = model_.simulations.nominal;
+  nominal.mean.resize(n);
+  nominal.std.resize(n);
+  Eigen::Index next = 0;
+  for (const auto& runs : learnt_) {
+    std::vector<const DesignRun*> these;
+    for (const DesignRun& each : runs)
+      if (each.at.effects.empty() && each.at.base == space_.nominal()) these.push_back(&each);
+    nominal.runs = std::min(nominal.runs, static_cast<int>(these.size()));
+    for (Eigen::Index c = 0; c < runs.front().outputs.size(); ++c, ++next) {
+      double sum = 0, square = 0;
+      for (const DesignRun* each : these) sum += each->outputs[c];
+      const double count = static_cast<double>(these.size()), mean = sum / count;
+      for (const DesignRun* each : these) square += (each->outputs[c] - mean) * (each->outputs[c] - mean);
+      nominal.mean[next] = mean;
+      nominal.std[next] = std::sqrt(square / std::max(count - 1, 1.0));
+    }
+  }
+  return nominal;
+}
+
+LearntModel DiagnosisSession::learn() const {
+  std::vector<double> factors;
+  for (const auto& of_one : forecasts_) factors.push_back(widening(of_one));
+  try {
+    return {space_, data_.measured.experiments, learnt_, factors};
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(error.what());
+  }
+}
+
+void DiagnosisSession::compare(const LearntModel& model, const std::vector<std::size_t>& known) {
+  for (std::size_t e = 0; e < learnt_.size(); ++e) {
+    const std::vector<DesignRun> fresh(learnt_[e].begin() + static_cast<std::ptrdiff_t>(known[e]),
+                                       learnt_[e].end());
+    for (const Forecast& each : model.surfaces()[e]->forecasts(fresh)) forecasts_[e].push_back(each);
+  }
+}
+
 DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   DiagnosisOutcome outcome;
   outcome.space = space_;
@@ -355,94 +424,95 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
         "no effect can be named; measure more",
         data_.measured.values.size(), space_.base.size()));
   learn_from(design_, run, outcome);
-  const std::vector<std::string>& names = data_.measured.experiments;
-  const auto learn = [&] {
-    try {
-      return LearntModel(space_, names, learnt_);
-    } catch (const std::invalid_argument& error) {
-      throw std::runtime_error(error.what());
-    }
-  };
   LearntModel model = learn();
   Diagnosis d = diagnose(space_, data_.measured, model);
-  const int p = static_cast<int>(space_.base.size());
-  std::optional<SimulatedModel> calibrated, augmented;
+  using Effects = std::vector<std::size_t>;
+  std::map<Effects, SimulatedModel> shown;  // the last of each hypothesis
+  std::map<Effects, std::string> not_to_be_shown;
+  const auto is_shown = [&](const Judgement& j) {
+    if (not_to_be_shown.contains(j.hypothesis.effects)) return true;
+    const auto there = shown.find(j.hypothesis.effects);
+    return there != shown.end() && !moved(there->second.at, j.best);
+  };
+  // Whether there was anything to simulate.
+  const auto show = [&](const Judgement& j) {
+    if (is_shown(j)) return false;
+    try {
+      shown.insert_or_assign(j.hypothesis.effects, simulate(j.best, run, outcome));
+    } catch (const TooFewRuns& error) {
+      if (j.hypothesis.effects.empty()) throw;
+      not_to_be_shown.emplace(j.hypothesis.effects, error.what());
+      outcome.notes.push_back(fmt::format("{} could not be tried by full simulations: {}",
+                                          name_of(space_, j.hypothesis), error.what()));
+    }
+    return true;
+  };
+  const auto gap_shown = [&](const Judgement& j) {
+    const SimulatedModel& simulated = shown.at(j.hypothesis.effects);
+    return simulated_gap(d, model, simulated.mean, simulated.runs, fitted(space_, j));
+  };
   outcome.settled = d.verdict.kind == DiagnosisVerdict::Kind::nothing;
   for (int round = 0; round < kMostRounds && !outcome.settled; ++round) {
     ++outcome.rounds;
-    bool fresh = false;
-    // Whether there was anything to simulate.
-    const auto show = [&](const ModelPoint& point, std::optional<SimulatedModel>& shown) {
-      if (shown && !moved(shown->at, point)) return false;
-      shown = simulate(point, run, outcome);
-      fresh = true;
-      return true;
-    };
-    show(d.calibration.best, calibrated);
-    if (d.calibration.gap.p <= kFitsAbove)
-      if (const Judgement* lead = best_effect(d)) {
-        if (show(lead->best, augmented) && round < kExplored) explore(*lead, run, outcome);
-        std::size_t rivals = 0;
-        for (const Judgement& j : d.judgements)
-          if (round == 0 && &j != lead && !j.hypothesis.effects.empty() && rivals < kMostRivals &&
-              j.probability * kRivalBy > lead->probability) {
-            ++rivals;
-            simulate(j.best, run, outcome);
-            fresh = true;
-          }
+    std::vector<std::size_t> known;
+    for (const auto& runs : learnt_) known.push_back(runs.size());
+    bool fresh = show(d.calibration);
+    if (d.calibration.gap.p <= kFitsAbove) {
+      const std::vector<const Judgement*> worth = worth_simulating(d);
+      for (const Judgement* j : worth) {
+        if (!show(*j)) continue;
+        fresh = true;
+        if (j == worth.front() && round < kExplored && shown.contains(j->hypothesis.effects))
+          explore(*j, run, outcome);
       }
+    }
     if (!fresh) {
       outcome.settled = true;
       break;
     }
+    compare(model, known);
     model = learn();
     Diagnosis again = diagnose(space_, data_.measured, model);
     const bool unchanged = same(d.verdict, again.verdict, d, again);
     d = std::move(again);
-    const Judgement* lead = best_effect(d);
-    const bool still = !moved(calibrated->at, d.calibration.best) &&
-                       (!augmented || lead == nullptr || !moved(augmented->at, lead->best));
-    outcome.settled = unchanged && still;
+    outcome.settled = unchanged && is_shown(d.calibration);
+    for (const Judgement* j : {best_effect(d), named_first(d)})
+      if (j != nullptr && d.calibration.gap.p <= kFitsAbove)
+        outcome.settled = outcome.settled && is_shown(*j);
+  }
+  // What its own simulations contradict is not named.
+  for (std::size_t tried = 0; tried < d.verdict.named.size();) {
+    const std::size_t k = d.verdict.named[tried];
+    const Judgement& j = d.judgements[k];
+    show(j);
+    Gap gap = j.gap;
+    if (!not_to_be_shown.contains(j.hypothesis.effects)) {
+      gap = gap_shown(j);
+      if (gap.p > kFitsAbove) {
+        ++tried;
+        continue;
+      }
+      outcome.notes.push_back(fmt::format(
+          "{} is not named: full simulations with its fitted values do not give the data (p = {:.2g})",
+          name_of(space_, j.hypothesis), gap.p));
+    }
+    refute(d, k, gap);
+    tried = 0;
+  }
+  outcome.nominal = nominal_of_design();
+  outcome.nominal.gap = simulated_gap(d, model, outcome.nominal.mean, std::max(outcome.nominal.runs, 1), 0);
+  if (const auto calibrated = shown.find({}); calibrated != shown.end()) {
+    outcome.calibrated = calibrated->second;
+    outcome.calibrated->gap = gap_shown(d.calibration);
+  }
+  if (const Judgement* named = named_first(d)) {
+    outcome.augmented = shown.at(named->hypothesis.effects);
+    outcome.augmented->gap = gap_shown(*named);
+    outcome.held_out_calibrated = held_out(space_, d, model, {{}, false, 0});
+    outcome.held_out_augmented = held_out(space_, d, model, named->hypothesis);
   }
   outcome.diagnosis = std::move(d);
-  const Diagnosis& found = outcome.diagnosis;
-  // The nominal model's simulations are those of the design.
-  const auto n = static_cast<Eigen::Index>(data_.measured.values.size());
-  outcome.nominal.at.base = space_.nominal();
-  outcome.nominal.runs = model_.simulations.nominal;
-  outcome.nominal.mean.resize(n);
-  outcome.nominal.std.resize(n);
-  Eigen::Index next = 0;
-  for (const auto& runs : learnt_) {
-    std::vector<const DesignRun*> nominal;
-    for (const DesignRun& each : runs)
-      if (each.at.effects.empty() && each.at.base == space_.nominal()) nominal.push_back(&each);
-    outcome.nominal.runs = std::min(outcome.nominal.runs, static_cast<int>(nominal.size()));
-    for (Eigen::Index c = 0; c < runs.front().outputs.size(); ++c, ++next) {
-      double sum = 0, square = 0;
-      for (const DesignRun* each : nominal) sum += each->outputs[c];
-      const double count = static_cast<double>(nominal.size()), mean = sum / count;
-      for (const DesignRun* each : nominal) square += (each->outputs[c] - mean) * (each->outputs[c] - mean);
-      outcome.nominal.mean[next] = mean;
-      outcome.nominal.std[next] = std::sqrt(square / std::max(count - 1, 1.0));
-    }
-  }
-  outcome.nominal.gap =
-      simulated_gap(found, model, outcome.nominal.mean, std::max(outcome.nominal.runs, 1), 0);
-  if (calibrated) {
-    calibrated->gap = simulated_gap(found, model, calibrated->mean, calibrated->runs, p);
-    outcome.calibrated = calibrated;
-  }
-  if (found.verdict.kind == DiagnosisVerdict::Kind::effect ||
-      found.verdict.kind == DiagnosisVerdict::Kind::group) {
-    const Judgement& named = found.judgements[found.verdict.named.front()];
-    if (!augmented || moved(augmented->at, named.best)) augmented = simulate(named.best, run, outcome);
-    augmented->gap = simulated_gap(found, model, augmented->mean, augmented->runs, fitted(space_, named));
-    outcome.augmented = augmented;
-    outcome.held_out_calibrated = held_out(space_, found, model, {{}, false, 0});
-    outcome.held_out_augmented = held_out(space_, found, model, named.hypothesis);
-  }
-  if (found.verdict.kind == DiagnosisVerdict::Kind::group) outcome.next = tell_apart(outcome);
+  if (outcome.diagnosis.verdict.kind == DiagnosisVerdict::Kind::group) outcome.next = tell_apart(outcome);
   return outcome;
 }
 

@@ -80,6 +80,10 @@ class DiagnosisSession {
   SimulatedModel simulate(const ModelPoint& point, const RunThrough& run, DiagnosisOutcome& outcome);
   // Learns from simulations spread over what the data leave open of a hypothesis.
   void explore(const Judgement& judgement, const RunThrough& run, DiagnosisOutcome& outcome);
+  LearntModel learn() const;
+  // How the model foretold the simulations after the first so many, by experiment.
+  void compare(const LearntModel& model, const std::vector<std::size_t>& known);
+  SimulatedModel nominal_of_design() const;
   std::vector<NextMeasurement> tell_apart(const DiagnosisOutcome& outcome) const;
 
   const DiagnosisModel& model_;
@@ -88,10 +92,11 @@ class DiagnosisSession {
   ModelSpace space_;
   std::vector<ExperimentRuns> design_;
   DesignRuns learnt_;
+  std::vector<std::vector<Forecast>> forecasts_;  // by experiment
   // All outputs of the simulations, for what was not measured; by experiment.
   std::vector<std::vector<std::pair<ModelPoint, std::map<std::string, double>>>> everything_;
   std::vector<std::string> failure_;  // the last of each experiment, why; empty without one
-  std::uint64_t checks_ = 0;  // seeds used for them
+  std::uint64_t checks_ = 0;          // seeds used for them
 };
 
 }  // namespace scree

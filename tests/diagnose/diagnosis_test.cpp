@@ -107,6 +107,39 @@ TEST_F(DiagnosisOf, AnEffectThatIsNotInTheLibraryIsUnknown) {
   EXPECT_LE(sure, 1) << "of 10";
 }
 
+// Full simulations at the fitted values that do not give the data take a name back; the rest share its
+// probability.
+TEST_F(DiagnosisOf, WhatSimulationsContradictIsNotNamed) {
+  Diagnosis d = of(SyntheticWorld::point(0.1, 0.1, {{1, 0.6}}), 3);
+  ASSERT_EQ(named(d), std::vector<std::size_t>{1});
+  refute(d, d.verdict.named.front(), Gap{90, 10, 1e-9});
+  EXPECT_NE(named(d), std::vector<std::size_t>{1});
+  double sum = 0, before = 1;
+  for (const Judgement& j : d.judgements) {
+    EXPECT_LE(j.probability, before) << "by falling probability";
+    sum += before = j.probability;
+    if (j.refuted) {
+      EXPECT_EQ(j.probability, 0);
+      EXPECT_EQ(j.gap.chi2, 90);
+    }
+  }
+  EXPECT_NEAR(sum, 1, 1e-9);
+}
+
+// A surface that is less sure of itself leaves an amplitude more open.
+TEST_F(DiagnosisOf, WiderSurfacesGiveWiderIntervals) {
+  const Measurements measured = world.measure(SyntheticWorld::point(0.1, 0.1, {{1, 0.6}}), 50, 3);
+  const LearntModel wider(world.space, world.experiments, world.design(1), {4, 4});
+  const auto width = [&](const LearntModel& learnt) {
+    const Diagnosis d = diagnose(world.space, measured, learnt);
+    for (const Judgement& j : d.judgements)
+      if (j.hypothesis.effects == std::vector<std::size_t>{1})
+        return j.effects[0][0].high - j.effects[0][0].low;
+    return 0.0;
+  };
+  EXPECT_GT(width(wider), 1.2 * width(model));
+}
+
 TEST_F(DiagnosisOf, WhatWasHeldOutIsForetoldByTheRightEffectOnly) {
   const Diagnosis d = of(SyntheticWorld::point(0.1, 0.1, {{1, 0.6}}), 3);
   const HeldOut before = held_out(world.space, d, model, {{}, false, 0});

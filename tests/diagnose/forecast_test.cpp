@@ -1,0 +1,66 @@
+#include "analysis/diagnose/forecast.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/diagnose/synthetic.h"
+
+namespace scree {
+namespace {
+
+// Errors of variance 1 + f v: f is found; none at all leave it what it usually is.
+TEST(Widening, IsWhatTheErrorsSay) {
+  EXPECT_NEAR(widening({}), 1.5, 0.03);
+  Random random(1, 0, RandomPurpose::design);
+  for (const double factor : {1.0, 4.0, 16.0}) {
+    std::vector<Forecast> forecasts;
+    for (int k = 0; k < 400; ++k) {
+      const double variance = std::pow(10, random.uniform(-1, 1));
+      const double z =
+          std::sqrt(-2 * std::log(1 - random.uniform())) * std::cos(2 * std::numbers::pi * random.uniform());
+      forecasts.push_back({variance, z * z * (1 + factor * variance)});
+    }
+    EXPECT_NEAR(widening(forecasts), factor, 0.2 * factor);
+  }
+}
+
+// Errors that the scatter of one run explains say nothing of a surface that is sure of itself.
+TEST(Widening, OfASurfaceKnownWellIsTheUsual) {
+  EXPECT_NEAR(widening(std::vector<Forecast>(50, {1e-6, 1.0})), 1.5, 0.03);
+}
+
+TEST(Widening, IsSmallWhereTheSurfaceIsOfTheKindThatItLearns) {
+  const SyntheticWorld world;
+  const DesignRuns learnt = world.design(4), fresh = world.design(5);
+  for (std::size_t e = 0; e < 2; ++e) {
+    const ResponseSurface surface(world.space, world.experiments[e], learnt[e]);
+    const std::vector<Forecast> forecasts = surface.forecasts(fresh[e]);
+    EXPECT_EQ(forecasts.size(), fresh[e].size() * static_cast<std::size_t>(surface.outputs()));
+    EXPECT_LT(widening(forecasts), 2.0);
+  }
+}
+
+// An effect does all it can before the first amplitude that was simulated: nothing in those runs says so.
+TEST(Widening, IsLargeWhereTheSurfaceIsSureAndWrong) {
+  ModelSpace space;
+  space.base = {{"material.mu", 0, -1, 1}};
+  space.effects = {{"sticky", "sticky", 0, {{"effects.sticky.size", "", 0, 1}}, {"one"}}};
+  Random random(3, 0, RandomPurpose::design);
+  const auto run = [&](double base, double x) {
+    ModelPoint at{Eigen::VectorXd::Constant(1, base), {}};
+    if (x != 0) at.effects.push_back({0, Eigen::VectorXd::Constant(1, x)});
+    const double y = 2 * base + 12 * std::min(x / 0.05, 1.0) + random.uniform(-1, 1);
+    return DesignRun{at, Eigen::VectorXd::Constant(1, y)};
+  };
+  std::vector<DesignRun> learnt, near, far;
+  for (int k = 0; k < 20; ++k) learnt.push_back(run(random.uniform(-1, 1), 0));
+  for (int k = 1; k <= 10; ++k) learnt.push_back(run(random.uniform(-1, 1), k / 10.0));
+  for (int k = 0; k < 12; ++k) {
+    near.push_back(run(random.uniform(-1, 1), 0.04));
+    far.push_back(run(random.uniform(-1, 1), 0.5));
+  }
+  const ResponseSurface surface(space, "one", learnt);
+  EXPECT_GT(widening(surface.forecasts(near)), 1.5 * widening(surface.forecasts(far)));
+}
+
+}  // namespace
+}  // namespace scree
