@@ -75,36 +75,39 @@ double PassingCurve::passing(double diameter) const {
 
 double PassingCurve::diameter(double passing) const {
   assert(passing >= 0 && passing <= 1);
-  const std::vector<double>&diameters = sharp_.diameters, &cumulative = sharp_.cumulative;
   const double wanted = passing * sharp_.mass();
-  if (blur_ > 0) {
-    // Smeared is the curve that is linear in log d between grains, not its steps: the more grains are split,
-    // the more of a curve through them would be steps.
-    const auto finer = [&](double d) {
-      const auto above = std::upper_bound(diameters.begin(), diameters.end(), d);
-      if (above == diameters.begin()) return 0.0;
-      const std::size_t i = above - diameters.begin() - 1;
-      if (above == diameters.end()) return cumulative[i];
-      return cumulative[i] + (cumulative[i + 1] - cumulative[i]) * std::log(d / diameters[i]) /
-                                 std::log(diameters[i + 1] / diameters[i]);
-    };
-    double low = std::log(diameters.front()) + kSpread[0].deviation * blur_,
-           high = std::log(diameters.back()) - kSpread[0].deviation * blur_;
-    for (int k = 0; k < kHalvings; ++k) {
-      const double middle = 0.5 * (low + high);
-      double there = 0;
-      for (const Spread& part : kSpread)
-        there += part.share * finer(std::exp(middle - part.deviation * blur_));
-      (there < wanted ? low : high) = middle;
-    }
-    return std::exp(high);
-  }
+  if (blur_ > 0) return blurred_diameter(wanted);
+  const std::vector<double>&diameters = sharp_.diameters, &cumulative = sharp_.cumulative;
   const auto at = std::lower_bound(cumulative.begin(), cumulative.end(), wanted);
   if (at == cumulative.begin()) return diameters.front();
   if (at == cumulative.end()) return diameters.back();
   const std::size_t i = at - cumulative.begin();
   const double t = (wanted - cumulative[i - 1]) / (cumulative[i] - cumulative[i - 1]);
   return diameters[i - 1] * std::pow(diameters[i] / diameters[i - 1], t);
+}
+
+// Smeared is the curve that is linear in log d between grains, not its steps: the more grains are split, the
+// more of a curve through them would be steps.
+double PassingCurve::blurred_diameter(double wanted) const {
+  const std::vector<double>&diameters = sharp_.diameters, &cumulative = sharp_.cumulative;
+  const auto finer = [&](double d) {
+    const auto above = std::upper_bound(diameters.begin(), diameters.end(), d);
+    if (above == diameters.begin()) return 0.0;
+    const std::size_t i = above - diameters.begin() - 1;
+    if (above == diameters.end()) return cumulative[i];
+    return cumulative[i] + (cumulative[i + 1] - cumulative[i]) * std::log(d / diameters[i]) /
+                               std::log(diameters[i + 1] / diameters[i]);
+  };
+  double low = std::log(diameters.front()) + kSpread[0].deviation * blur_,
+         high = std::log(diameters.back()) - kSpread[0].deviation * blur_;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (low + high);
+    double there = 0;
+    for (const Spread& part : kSpread)
+      there += part.share * finer(std::exp(middle - part.deviation * blur_));
+    (there < wanted ? low : high) = middle;
+  }
+  return std::exp(high);
 }
 
 namespace {

@@ -37,6 +37,7 @@ class PassingCurve {
     double mass() const { return cumulative.back(); }
   };
   static Steps steps_of(const std::vector<double>& diameters, const std::vector<double>& masses);
+  double blurred_diameter(double wanted) const;  // kg finer
   const Steps& seen() const { return blur_ > 0 ? blurred_ : sharp_; }
 
   double blur_;

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-/// Exit codes of scree. kWatchFailed: a run broke the physics watch (sim/scene/watch.h) or blew up.
-enum ExitCode { kOk = 0, kFailed = 1, kBadInput = 2, kWatchFailed = 3, kInterrupted = 130 };
+#include "cli/exit_code.h"
 
 /// Wall time between checkpoints of a run, where nothing else is said.
 inline constexpr double kCheckpointMinutes = 5;

@@ -150,8 +150,8 @@ std::string effects_yaml(const scree::ImageBias& bias, const fs::path& scenario,
 }
 
 // Chi and D50 of every section, the pictures being repeats.
-int write_dataset_of(const ImageOptions& options, const scree::Scenario& scenario,
-                     const std::vector<scree::AnalysedPhoto>& photos, const fs::path& out) {
+WrittenDataset dataset_of(const ImageOptions& options, const scree::Scenario& scenario,
+                          const std::vector<scree::AnalysedPhoto>& photos, const fs::path& out) {
   scree::DatasetDraft draft;
   draft.title = "Gradings from photographs";
   std::vector<std::string> names;
@@ -172,11 +172,9 @@ int write_dataset_of(const ImageOptions& options, const scree::Scenario& scenari
         experiment.observables[fmt::format("{}_S{}", name, k)] = mean;
   }
   draft.experiments.push_back(std::move(experiment));
-  WrittenDataset dataset(
-      out, [&](const fs::path& folder) { return note_of_left_out(scree::write_dataset(draft, folder)); });
-  if (const int code = dataset.check(); code != kOk) return code;
-  dataset.put_in_place();
-  return kOk;
+  return {out, [draft = std::move(draft)](const fs::path& folder) {
+            return note_of_left_out(scree::write_dataset(draft, folder));
+          }};
 }
 
 // What can be said before any picture is looked at.
@@ -239,6 +237,11 @@ int run_image(const ImageOptions& options) {
     fmt::print(stderr, "{}: {}\n", options.weighed.string(), error.what());
     return kBadInput;
   }
+  std::optional<WrittenDataset> dataset;
+  if (scenario) {
+    dataset = dataset_of(options, *scenario, report.photos, out);
+    if (const int code = dataset->check(); code != kOk) return code;
+  }
   if (!prepare_folder(out, options.force)) return kBadInput;
   for (std::size_t i = 0; i < overlays.size(); ++i) {
     report.overlays.push_back(out / ("overlay_" + report.photos[i].name + ".jpg"));
@@ -260,5 +263,6 @@ int run_image(const ImageOptions& options) {
   report.version = fmt::format("scree {} ({})", SCREE_VERSION, SCREE_REVISION);
   scree::write_image_report(report, out);
   fmt::print("report: {}\n", (out / "report.html").string());
-  return scenario ? write_dataset_of(options, *scenario, report.photos, out) : kOk;
+  if (dataset) dataset->put_in_place();
+  return kOk;
 }

@@ -14,11 +14,11 @@
 #include <thread>
 
 #include "cli/ensemble/executor.h"
+#include "cli/exit_code.h"
 
 namespace scree {
 namespace {
 
-constexpr int kBadInput = 2, kInterrupted = 130;       // exit status of a run
 constexpr auto kLook = std::chrono::milliseconds(20);  // between looks at the processes
 constexpr double kToCheckpoint = 30;                   // s that interrupted runs have for their last
 

@@ -129,6 +129,17 @@ TEST_F(PictureFile, DiscsOfKnownSizeComeOutAsTheyAre) {
   EXPECT_THAT(slurp(out / "gradings.csv"), HasSubstr("image,section,d100_cm,d95_cm"));
 }
 
+// The same picture twice has no scatter between repeats: nothing is left for a dataset, and nothing is written.
+TEST_F(PictureFile, ARefusedDatasetLeavesNothing) {
+  write_picture(folder_ / "discs.png", grey_with_discs());
+  const std::string photo = (folder_ / "discs.png").string();
+  const fs::path out = folder_ / "out";
+  const Called called = call("image " + photo + " " + photo + " --scale 1cm/px --sections 2 --scenario " +
+                             SCREE_TEST_ASSETS "/../scenarios/small_dump.yaml --out " + out.string());
+  EXPECT_EQ(called.code, 2);
+  EXPECT_FALSE(fs::exists(out)) << called.text;
+}
+
 TEST_F(PictureFile, ExifTurnsAPhotographUpright) {
   // 60 wide and 40 high with a bright left half; orientation 6: to be turned by 90 degrees clockwise.
   cv::Mat3b picture(40, 60, cv::Vec3b(10, 10, 10));
