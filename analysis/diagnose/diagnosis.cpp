@@ -377,10 +377,11 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
 
 void refute(Diagnosis& d, std::size_t judgement, const Gap& gap) {
   Judgement& refuted = d.judgements[judgement];
-  const double rest = 1 - refuted.probability;
   refuted.gap = gap;
   refuted.refuted = true;
   refuted.probability = 0;
+  double rest = 0;  // summed: one minus what is nearly one has lost its digits
+  for (const Judgement& j : d.judgements) rest += j.probability;
   for (Judgement& j : d.judgements) {
     if (rest > 0) j.probability /= rest;
     if (j.hypothesis.effects.empty() && !j.hypothesis.unknown) d.calibration.probability = j.probability;
@@ -435,8 +436,7 @@ HeldOut held_out(const ModelSpace& space, const Diagnosis& d, const LearntModel&
   return result;
 }
 
-Gap simulated_gap(const Diagnosis& d, const LearntModel& model, const Eigen::VectorXd& mean, int runs,
-                  int fitted) {
+Gap simulated_gap(const Diagnosis& d, const LearntModel& model, const Eigen::VectorXd& mean, int runs) {
   Eigen::MatrixXd covariance = d.covariance;
   Eigen::Index first = 0;
   for (const ResponseSurface* surface : model.surfaces()) {
@@ -446,7 +446,7 @@ Gap simulated_gap(const Diagnosis& d, const LearntModel& model, const Eigen::Vec
   }
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
   return gap_of(density(d.measured.vector() - mean, covariance, scale, d.freedom).chi2,
-                static_cast<int>(mean.size()), fitted, d.freedom);
+                static_cast<int>(mean.size()), 0, d.freedom);
 }
 
 double detectability(const ModelSpace& space, const LearntModel& model, const Eigen::MatrixXd& covariance,

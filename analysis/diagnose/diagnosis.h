@@ -130,10 +130,11 @@ void refute(Diagnosis& diagnosis, std::size_t judgement, const Gap& gap);
 HeldOut held_out(const ModelSpace& space, const Diagnosis& diagnosis, const LearntModel& model,
                  const Hypothesis& hypothesis);
 
-/// Chi-square of the measured values and what simulations at the fitted model gave: `mean` over `runs` seeds
-/// of each experiment, whose scatter is added; `fitted` parameters.
-Gap simulated_gap(const Diagnosis& diagnosis, const LearntModel& model, const Eigen::VectorXd& mean, int runs,
-                  int fitted);
+/// Chi-square of the measured values and what full simulations gave: `mean` over `runs` seeds of each
+/// experiment, whose scatter is added. All numbers are free even at fitted values, which are those of the
+/// surfaces and not of these simulations.
+Gap simulated_gap(const Diagnosis& diagnosis, const LearntModel& model, const Eigen::VectorXd& mean,
+                  int runs);
 
 /// Root mean square change of the measured numbers by the effects at a point, in standard uncertainties, as
 /// far as other base parameters cannot make up for it.

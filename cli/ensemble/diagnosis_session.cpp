@@ -99,12 +99,6 @@ std::vector<const Judgement*> worth_simulating(const Diagnosis& d) {
   return all;
 }
 
-int fitted(const ModelSpace& space, const Judgement& j) {
-  int count = static_cast<int>(space.base.size());
-  for (const std::size_t e : j.hypothesis.effects) count += static_cast<int>(space.effects[e].axes.size());
-  return count;
-}
-
 }  // namespace
 
 std::vector<PlannedRun> design_of(const ModelSpace& space, const SimulationCounts& counts) {
@@ -449,7 +443,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   };
   const auto gap_shown = [&](const Judgement& j) {
     const SimulatedModel& simulated = shown.at(j.hypothesis.effects);
-    return simulated_gap(d, model, simulated.mean, simulated.runs, fitted(space_, j));
+    return simulated_gap(d, model, simulated.mean, simulated.runs);
   };
   outcome.settled = d.verdict.kind == DiagnosisVerdict::Kind::nothing;
   for (int round = 0; round < kMostRounds && !outcome.settled; ++round) {
@@ -500,7 +494,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     tried = 0;
   }
   outcome.nominal = nominal_of_design();
-  outcome.nominal.gap = simulated_gap(d, model, outcome.nominal.mean, std::max(outcome.nominal.runs, 1), 0);
+  outcome.nominal.gap = simulated_gap(d, model, outcome.nominal.mean, std::max(outcome.nominal.runs, 1));
   if (const auto calibrated = shown.find({}); calibrated != shown.end()) {
     outcome.calibrated = calibrated->second;
     outcome.calibrated->gap = gap_shown(d.calibration);
