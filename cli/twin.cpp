@@ -32,7 +32,9 @@ bool draw(const TwinOptions& options, const scree::DiagnosisModel& model, scree:
       // Of all effects and none.
       const auto pick =
           static_cast<std::size_t>(random.uniform() * static_cast<double>(model.effects.size() + 1));
-      if (pick < model.effects.size()) spec.effects.push_back(model.effects[pick]);
+      if (pick < model.effects.size() &&
+          std::find(spec.effects.begin(), spec.effects.end(), model.effects[pick]) == spec.effects.end())
+        spec.effects.push_back(model.effects[pick]);
       continue;
     }
     if (std::find(model.effects.begin(), model.effects.end(), name) == model.effects.end()) {
@@ -84,10 +86,12 @@ int run_twin(const TwinOptions& options) {
   }
   const fs::path out = options.out.empty() ? free_run_folder("twin") : options.out;
   const fs::path answer = options.answer.empty() ? fs::path(out.string() + ".answer.json") : options.answer;
+  const bool was_there = fs::exists(out);
   if (!prepare_folder(out, options.force)) return kBadInput;
   const auto store = open_store(options.ensemble.store, false);
   // What made the truth is not where diagnose looks.
   const fs::path hidden_file = answer.string() + ".runs.sqlite";
+  const bool were_runs = fs::exists(hidden_file);
   const auto hidden = open_store(hidden_file, false);
   if (!store || !hidden) return kBadInput;
   try {
@@ -98,6 +102,9 @@ int run_twin(const TwinOptions& options) {
     scree::write_text_file(answer, scree::twin_answer(model, spec, twin.truth));
   } catch (const scree::TooWeak& error) {
     fmt::print(stderr, "{}\n", error.what());
+    std::error_code left;  // an empty folder or a store more is no reason to fail
+    if (!was_there) fs::remove(out, left);
+    if (!were_runs) fs::remove(hidden_file, left);
     return kBadInput;
   } catch (const scree::Stopped& error) {
     fmt::print(stderr, "{}\n", error.what());

@@ -229,7 +229,7 @@ void sort_by_probability(std::vector<Judgement>& judgements) {
 }
 
 bool explains(const Judgement& j) {
-  return !j.refuted && j.gap.p > kFitsAbove;
+  return !j.refuted && !j.untried && j.gap.p > kFitsAbove;
 }
 
 bool holds(const Hypothesis& larger, const Hypothesis& smaller) {
@@ -243,13 +243,13 @@ DiagnosisVerdict verdict_of(const Diagnosis& d) {
   if (d.calibration.gap.p > kFitsAbove) return {Kind::calibration, {}};
   const auto& all = d.judgements;
   std::size_t first = all.size();
-  double unknown = 0, leading = 0;  // of the unknown; of all but calibration
+  double unknown = 0;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    if (all[k].hypothesis.unknown || is_effect(all[k])) leading = std::max(leading, all[k].probability);
     if (all[k].hypothesis.unknown) unknown = all[k].probability;
     if (first == all.size() && is_effect(all[k]) && explains(all[k])) first = k;
   }
   // What re-calibration leaves may still be chance: anything else must be much more probable.
+  const double leading = std::max(unknown, first < all.size() ? all[first].probability : 0);
   if (d.calibration.probability * kApartBy > leading) return {Kind::calibration, {}};
   if (first == all.size() || unknown > all[first].probability) return {Kind::unknown, {}};
   DiagnosisVerdict verdict{Kind::effect, {first}};
@@ -375,10 +375,10 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
   return d;
 }
 
-void refute(Diagnosis& d, std::size_t judgement, const Gap& gap) {
+void refute(Diagnosis& d, std::size_t judgement, const std::optional<Gap>& gap) {
   Judgement& refuted = d.judgements[judgement];
-  refuted.gap = gap;
-  refuted.refuted = true;
+  if (gap) refuted.gap = *gap;
+  (gap ? refuted.refuted : refuted.untried) = true;
   refuted.probability = 0;
   double rest = 0;  // summed: one minus what is nearly one has lost its digits
   for (const Judgement& j : d.judgements) rest += j.probability;

@@ -52,6 +52,7 @@ struct Judgement {
   ModelPoint best;         ///< most likely
   Gap gap;                 ///< there
   bool refuted = false;    ///< full simulations there do not give the data; the gap is theirs
+  bool untried = false;    ///< full simulations there fail or give no measurement: not named
   struct Interval {
     double low, middle, high;
   };
@@ -122,9 +123,10 @@ std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Judgement&
 /// Finds, re-calibrates and names.
 Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model);
 
-/// Full simulations at a judgement's best parameters leave `gap` and contradict it: its probability goes to
-/// the others in proportion. Says anew what is named; the order of judgements changes.
-void refute(Diagnosis& diagnosis, std::size_t judgement, const Gap& gap);
+/// Full simulations at a judgement's best parameters leave `gap` and contradict it, or none could be done
+/// (nothing): its probability goes to the others in proportion. Says anew what is named; the order of
+/// judgements changes.
+void refute(Diagnosis& diagnosis, std::size_t judgement, const std::optional<Gap>& gap);
 
 /// Every experiment left out in turn; with one experiment every section, else every number.
 HeldOut held_out(const ModelSpace& space, const Diagnosis& diagnosis, const LearntModel& model,

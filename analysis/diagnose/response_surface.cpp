@@ -347,6 +347,7 @@ SurfacePrediction ResponseSurface::at(const ModelPoint& point) const {
 }
 
 std::vector<Forecast> ResponseSurface::forecasts(const std::vector<DesignRun>& runs) const {
+  if (runs.empty()) return {};
   const auto n = static_cast<Eigen::Index>(runs.size());
   Eigen::MatrixXd features = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(terms_.size()));
   Eigen::MatrixXd found(n, outputs());

@@ -474,21 +474,29 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
       if (j != nullptr && d.calibration.gap.p <= kFitsAbove)
         outcome.settled = outcome.settled && is_shown(*j);
   }
-  // What its own simulations contradict is not named.
+  // What its own simulations contradict is not named; they are of the last fit.
+  std::set<Effects> afresh;
   for (std::size_t tried = 0; tried < d.verdict.named.size();) {
     const std::size_t k = d.verdict.named[tried];
     const Judgement& j = d.judgements[k];
     show(j);
-    Gap gap = j.gap;
+    std::optional<Gap> gap;
     if (!not_to_be_shown.contains(j.hypothesis.effects)) {
       gap = gap_shown(j);
-      if (gap.p > kFitsAbove) {
+      if (gap->p > kFitsAbove) {
         ++tried;
         continue;
       }
+      if (afresh.insert(j.hypothesis.effects).second) {
+        try {
+          shown.insert_or_assign(j.hypothesis.effects, simulate(j.best, run, outcome));
+          continue;
+        } catch (const TooFewRuns&) {
+        }
+      }
       outcome.notes.push_back(fmt::format(
           "{} is not named: full simulations with its fitted values do not give the data (p = {:.2g})",
-          name_of(space_, j.hypothesis), gap.p));
+          name_of(space_, j.hypothesis), gap->p));
     }
     refute(d, k, gap);
     tried = 0;

@@ -126,6 +126,44 @@ TEST_F(DiagnosisOf, WhatSimulationsContradictIsNotNamed) {
   EXPECT_NEAR(sum, 1, 1e-9);
 }
 
+// What could not be simulated is not named either; its gap stays that of the surface.
+TEST_F(DiagnosisOf, WhatCannotBeSimulatedIsNotNamed) {
+  Diagnosis d = of(SyntheticWorld::point(0.1, 0.1, {{1, 0.6}}), 3);
+  const double chi2 = d.judgements[d.verdict.named.front()].gap.chi2;
+  refute(d, d.verdict.named.front(), std::nullopt);
+  EXPECT_NE(named(d), std::vector<std::size_t>{1});
+  const auto untried =
+      std::find_if(d.judgements.begin(), d.judgements.end(), [](const Judgement& j) { return j.untried; });
+  ASSERT_NE(untried, d.judgements.end());
+  EXPECT_FALSE(untried->refuted);
+  EXPECT_EQ(untried->gap.chi2, chi2);
+}
+
+// Re-calibration three times as probable as the one effect that explains the data: no name, however probable
+// an effect that does not explain them.
+TEST(Verdict, NamesNothingThatIsLessProbableThanCalibration) {
+  Diagnosis d;
+  d.nominal.p = d.calibration.gap.p = 1e-4;
+  const auto add = [&](std::vector<std::size_t> effects, bool unknown, double probability, double p) {
+    Judgement j;
+    j.hypothesis.effects = std::move(effects);
+    j.hypothesis.unknown = unknown;
+    j.probability = probability;
+    j.gap.p = p;
+    d.judgements.push_back(j);
+  };
+  add({0}, false, 0.95, 0.005);
+  add({}, false, 0.03, 1e-4);
+  add({1}, false, 0.01, 0.02);
+  add({}, true, 0.005, 1);
+  add({2}, false, 0, 0.5);
+  refute(d, 4, Gap{90, 10, 1e-9});
+  EXPECT_EQ(d.verdict.kind, Kind::calibration);
+  d.judgements[1].probability = 1e-4;
+  refute(d, 4, Gap{90, 10, 1e-9});
+  EXPECT_EQ(d.verdict.kind, Kind::effect);
+}
+
 // A surface that is less sure of itself leaves an amplitude more open.
 TEST_F(DiagnosisOf, WiderSurfacesGiveWiderIntervals) {
   const Measurements measured = world.measure(SyntheticWorld::point(0.1, 0.1, {{1, 0.6}}), 50, 3);

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using testing::HasSubstr;
 
-// A load of 40 t over a bench of 4 m and a block that falls, four effects: some 50 simulations of a third of
+// A load of 40 t over a bench of 4 m, four effects: some 50 simulations of a third of
 // a second.
 const char* const kModel = R"(title: Dump
 parameters:
@@ -87,7 +87,7 @@ class Twins : public testing::Test {
       if (hypothesis["effects"] == Json::array({effect})) {
         const Json& interval = hypothesis["parameters"][key];
         const double low = interval["low"], high = interval["high"];
-        // Of two 90 % intervals one misses in a fifth of suites; twice as wide ones hardly ever.
+        // Of three 90 % intervals one misses in a quarter of suites; twice as wide ones hardly ever.
         const double half = 0.5 * (high - low);
         EXPECT_GE(truth, low - half) << c.words;
         EXPECT_LE(truth, high + half) << c.words;

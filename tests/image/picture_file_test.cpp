@@ -129,7 +129,8 @@ TEST_F(PictureFile, DiscsOfKnownSizeComeOutAsTheyAre) {
   EXPECT_THAT(slurp(out / "gradings.csv"), HasSubstr("image,section,d100_cm,d95_cm"));
 }
 
-// The same picture twice has no scatter between repeats: nothing is left for a dataset, and nothing is written.
+// The same picture twice has no scatter between repeats: nothing is left for a dataset, and nothing is
+// written.
 TEST_F(PictureFile, ARefusedDatasetLeavesNothing) {
   write_picture(folder_ / "discs.png", grey_with_discs());
   const std::string photo = (folder_ / "discs.png").string();
@@ -137,6 +138,7 @@ TEST_F(PictureFile, ARefusedDatasetLeavesNothing) {
   const Called called = call("image " + photo + " " + photo + " --scale 1cm/px --sections 2 --scenario " +
                              SCREE_TEST_ASSETS "/../scenarios/small_dump.yaml --out " + out.string());
   EXPECT_EQ(called.code, 2);
+  EXPECT_THAT(called.text, testing::HasSubstr("nothing to write a dataset of"));
   EXPECT_FALSE(fs::exists(out)) << called.text;
 }
 
