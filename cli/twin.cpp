@@ -25,6 +25,10 @@ bool draw(const TwinOptions& options, const scree::DiagnosisModel& model, scree:
   scree::Random random(spec.seed, 1, scree::RandomPurpose::measurement);
   std::vector<std::string> asked = options.effects;
   if (asked.empty()) asked.push_back("random");
+  const auto add = [&](const std::string& effect) {  // once
+    if (std::find(spec.effects.begin(), spec.effects.end(), effect) == spec.effects.end())
+      spec.effects.push_back(effect);
+  };
   for (const std::string& name : asked) {
     if (name == "none") continue;
     if (name == "random") {
@@ -32,9 +36,7 @@ bool draw(const TwinOptions& options, const scree::DiagnosisModel& model, scree:
       // Of all effects and none.
       const auto pick =
           static_cast<std::size_t>(random.uniform() * static_cast<double>(model.effects.size() + 1));
-      if (pick < model.effects.size() &&
-          std::find(spec.effects.begin(), spec.effects.end(), model.effects[pick]) == spec.effects.end())
-        spec.effects.push_back(model.effects[pick]);
+      if (pick < model.effects.size()) add(model.effects[pick]);
       continue;
     }
     if (std::find(model.effects.begin(), model.effects.end(), name) == model.effects.end()) {
@@ -42,8 +44,7 @@ bool draw(const TwinOptions& options, const scree::DiagnosisModel& model, scree:
                  scree::suggestion(name, model.effects), scree::join(model.effects));
       return false;
     }
-    if (std::find(spec.effects.begin(), spec.effects.end(), name) == spec.effects.end())
-      spec.effects.push_back(name);
+    add(name);
   }
   if (options.strength == "random") {
     const double pick = random.uniform();
