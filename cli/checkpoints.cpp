@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kKept = 2;
-constexpr const char kFinished[] = "finished";
+constexpr const char kFinished[] = "finished", kPile[] = "pile";
 
 // By number, rising.
 std::vector<std::pair<int, fs::path>> checkpoints_in(const fs::path& folder) {
@@ -98,13 +98,47 @@ void Checkpoints::finish(double time, const std::function<void(scree::StateWrite
   for (const auto& [number, file] : checkpoints_in(folder_)) fs::remove(file, ignored);
 }
 
+void Checkpoints::keep_pile(const std::string& pile, double time,
+                            const std::function<void(scree::StateWriter&)>& outcome) const {
+  fs::create_directories(folder_);
+  scree::write_checkpoint(folder_ / kPile, {header_.program, pile, header_.seed, time}, outcome);
+}
+
+std::unique_ptr<scree::CheckpointReader> Checkpoints::pile(const std::string& pile) const {
+  const fs::path file = folder_ / kPile;
+  std::error_code none;
+  if (!fs::exists(file, none))
+    throw scree::StateError(
+        fmt::format("{}: no such pile; scree run --keep-pile leaves one of each seed", file.string()));
+  try {
+    auto reader = std::make_unique<scree::CheckpointReader>(file);
+    const scree::CheckpointHeader& header = reader->header();
+    if (header.program != header_.program)
+      throw scree::StateError(fmt::format("{}: made by {}, this is {}: the numbers may differ", file.string(),
+                                          header.program, header_.program));
+    if (header.scenario != pile || header.seed != header_.seed)
+      throw scree::StateError(fmt::format(
+          "{}: a pile of another scenario or seed; only effects on measurement may differ", file.string()));
+    return reader;
+  } catch (const scree::DamagedCheckpoint& damage) {
+    throw scree::StateError(damage.what());
+  }
+}
+
+void Checkpoints::remove_pile_from(const fs::path& folder) {
+  std::error_code ignored;
+  fs::remove(folder / kPile, ignored);
+}
+
 void Checkpoints::remove_from(const fs::path& folder) {
   std::error_code ignored;
   fs::remove(folder / kFinished, ignored);
   for (const auto& [number, file] : checkpoints_in(folder)) fs::remove(file, ignored);
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))  // of one that was killed
     if (const std::string name = entry.path().filename().string();
-        (name.starts_with(scree::kCheckpointName) || name.starts_with(kFinished)) && name.ends_with(".part"))
+        (name.starts_with(scree::kCheckpointName) || name.starts_with(kFinished) ||
+         name.starts_with(kPile)) &&
+        name.ends_with(".part"))
       fs::remove(entry.path(), ignored);
   fs::remove(folder, ignored);  // if that was all
 }

@@ -1,5 +1,6 @@
 #pragma once
-// The checkpoints of one seed, in its folder: the last two, and its outcome when it has come to its end.
+// The checkpoints of one seed, in its folder: the last two, its outcome when it has come to its end, and that
+// again as a pile that other runs may read.
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -28,8 +29,16 @@ class Checkpoints {
   /// Keeps the outcome of the seed instead of its checkpoints.
   void finish(double time, const std::function<void(scree::StateWriter&)>& outcome);
 
-  /// Takes all of them away.
+  /// Keeps the outcome of the seed for runs of the same `pile` (RunRequest).
+  void keep_pile(const std::string& pile, double time,
+                 const std::function<void(scree::StateWriter&)>& outcome) const;
+  /// What another run kept for this seed in this folder. Throws StateError: it is not there, damaged, or of
+  /// another program, pile or seed.
+  std::unique_ptr<scree::CheckpointReader> pile(const std::string& pile) const;
+
+  /// Takes all of them away, but for the pile.
   static void remove_from(const std::filesystem::path& folder);
+  static void remove_pile_from(const std::filesystem::path& folder);
 
  private:
   std::unique_ptr<scree::CheckpointReader> open(const std::filesystem::path& file,

@@ -50,16 +50,25 @@ Command run_command(CLI::App& all) {
                   "Wall time between checkpoints, from which a run that was killed can be resumed; 0: none; "
                   "default: 5")
       ->check(CLI::Range(0.0, 1e6));
+  app->add_flag("--keep-pile", run.keep_pile,
+                "Leave the finished pile of every seed in its folder, for --pile");
+  app->add_option(
+      "--pile", run.pile,
+      "Do not simulate: read the piles in this run folder, which differ in effects on measurement "
+      "only; same results");
   CLI::Option* const resume = app->add_option(
       "--resume", run.resume, "Go on with the run in this folder, killed or interrupted; same results");
-  for (const char* other : {"file", "--seeds", "--out", "--set", "--force"})
+  for (const char* other : {"file", "--seeds", "--out", "--set", "--force", "--keep-pile", "--pile"})
     resume->excludes(app->get_option(other));
   app->footer(
       "\nExit codes: 0 done; 1 failed (disk full, no memory); 2 bad input; 3 the run broke the watch on "
       "energy, numbers and lost rock, or blew up, and does not count; 130 interrupted\n"
       "\nExamples:\n  scree run scenarios/quick_dump.yaml\n"
       "  scree run scenarios/a1_10m.yaml --seeds 5 --out runs/a1_five --set experiment.dumps=2\n"
-      "  scree run --resume runs/a1_five\n");
+      "  scree run --resume runs/a1_five\n"
+      "  scree run scenarios/quick_dump.yaml --keep-pile --out runs/true\n"
+      "  scree run scenarios/quick_dump.yaml --pile runs/true --set effects.image_blur.width=0.3 --out "
+      "runs/blurred\n");
   return {app, [=] {
             if (file->count() == 0 && resume->count() == 0) {
               fmt::print(stderr, "scree: run needs a scenario file, or --resume and a run folder\n");

@@ -21,7 +21,9 @@ struct RunOptions {
   bool summary_only = false;     ///< no report, no pictures
   std::filesystem::path resume;  ///< run folder to go on with; the others but threads are those it began with
   double checkpoint_minutes =
-      -1;  ///< wall time between checkpoints; 0: none; below: as it began, or the default
+      -1;                      ///< wall time between checkpoints; 0: none; below: as it began, or the default
+  bool keep_pile = false;      ///< leave the finished pile of every seed for others
+  std::filesystem::path pile;  ///< run folder whose piles are read instead of simulated; empty: none
 };
 
 /// How the runs of an ensemble are done and kept.

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "analysis/diagnose/outcome.h"
 #include "cli/commands.h"
@@ -25,23 +26,34 @@ void print_plan(const scree::DiagnosisSession& session, const scree::ResultsStor
   double left = 0;
   bool known = true;
   for (std::size_t e = 0; e < session.design().size(); ++e) {
-    std::size_t here = 0;
+    // Readings of one pile are one simulation; a pile is not kept after its readings.
+    std::set<std::string> piles, to_come;
+    std::size_t timed = 0, readings = 0;
     double seconds = 0;
-    for (const scree::RunRequest& request : session.design()[e].requests)
-      if (const auto result = store.find(request.key); result && result->state == scree::RunState::done) {
-        ++here;
+    for (const scree::RunRequest& request : session.design()[e].requests) {
+      const auto result = store.find(request.key);
+      const bool done = result && result->state == scree::RunState::done,
+                 reading = request.pile != request.key;
+      piles.insert(request.pile);
+      readings += reading;
+      if (!done) to_come.insert(request.pile);
+      if (done && !reading) {
+        ++timed;
         seconds += result->wall_seconds;
       }
-    const std::size_t needed = session.design()[e].requests.size();
-    fmt::print("{:<20} {:>5} simulations, {} in the store", session.data().experiments[e].name, needed, here);
-    if (here > 0) fmt::print(", {} each", scree::spell_duration(seconds / static_cast<double>(here)));
+    }
+    const std::size_t here = piles.size() - to_come.size();
+    fmt::print("{:<20} {:>5} simulations, {} in the store", session.data().experiments[e].name, piles.size(),
+               here);
+    if (timed > 0) fmt::print(", {} each", scree::spell_duration(seconds / static_cast<double>(timed)));
+    if (readings > 0) fmt::print("; {} more readings of their piles", readings);
     fmt::print("\n");
-    all += needed;
+    all += piles.size();
     there += here;
-    if (here > 0)
-      left += seconds / static_cast<double>(here) * static_cast<double>(needed - here);
+    if (timed > 0)
+      left += seconds / static_cast<double>(timed) * static_cast<double>(to_come.size());
     else
-      known = false;
+      known = to_come.empty() && known;
   }
   fmt::print("{} simulations, {} of them in the store; then up to {} more of what is named\n", all, there,
              session.most_further());

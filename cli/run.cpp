@@ -49,6 +49,7 @@ constexpr double kDying = 10;  // s that a killed process may take to end
 struct Plan {
   scree::Scenario scenario;
   fs::path out;
+  fs::path pile;  // run folder with the piles to be read; empty: simulate
   bool resume = false, summary_only = false;
   RunRecord record;
   std::unique_ptr<FolderLock> lock;
@@ -69,7 +70,22 @@ bool check(const scree::ScenarioResult& loaded) {
   return true;
 }
 
-// Both throw std::runtime_error with what to do about it.
+fs::path folder_of(const fs::path& run, std::uint64_t seed) {
+  return run / fmt::format("seed_{}", seed);
+}
+
+// These throw std::runtime_error with what to do about it.
+
+// Every seed's pile is there and fits.
+void check_piles(const Plan& plan) {
+  std::error_code none;
+  if (fs::equivalent(plan.pile, plan.out, none))
+    throw std::runtime_error(
+        fmt::format("--pile {}: is the folder of the new run, too; give another --out", plan.pile.string()));
+  for (const std::uint64_t seed : plan.scenario.seeds)
+    Checkpoints(folder_of(plan.pile, seed), {program_version(), {}, seed, 0}, 0)
+        .pile(pile_hash(plan.scenario));
+}
 
 std::optional<Plan> plan_new(const RunOptions& options) {
   scree::ScenarioResult loaded = scree::load_scenario(options.file, options.overrides, asset_dir());
@@ -81,13 +97,17 @@ std::optional<Plan> plan_new(const RunOptions& options) {
     throw std::runtime_error(fmt::format(
         "--seeds {}: no integers follow the scenario's last seed; give them in its file", options.seeds));
   plan.out = options.out.empty() ? free_run_folder(plan.scenario.name) : options.out;
+  plan.pile = options.pile;
+  if (!plan.pile.empty()) check_piles(plan);
   if (!prepare_folder(plan.out, options.force)) return std::nullopt;
   plan.lock = std::make_unique<FolderLock>(plan.out);
   plan.summary_only = options.summary_only;
   plan.record = {
       program_version(),  scenario_hash(plan.scenario),
       plan.scenario.name, plan.scenario.seeds,
-      plan.summary_only,  options.checkpoint_minutes < 0 ? kCheckpointMinutes : options.checkpoint_minutes};
+      plan.summary_only,  options.checkpoint_minutes < 0 ? kCheckpointMinutes : options.checkpoint_minutes,
+      options.keep_pile};
+  if (!plan.pile.empty()) plan.record.checkpoint_minutes = 0;  // nothing that could be resumed
   return plan;
 }
 
@@ -127,15 +147,11 @@ std::optional<Plan> make_plan(const RunOptions& options) {
   }
 }
 
-fs::path folder_of(const Plan& plan, std::uint64_t seed) {
-  return plan.out / fmt::format("seed_{}", seed);
-}
-
 void forget_checkpoints(const Plan& plan) {
   remove_record(plan.out);
   for (const std::uint64_t seed : plan.scenario.seeds) {
-    scree::TrajectoryWriter::forget_saved(folder_of(plan, seed) / "particles.h5");
-    Checkpoints::remove_from(folder_of(plan, seed));
+    scree::TrajectoryWriter::forget_saved(folder_of(plan.out, seed) / "particles.h5");
+    Checkpoints::remove_from(folder_of(plan.out, seed));
   }
 }
 
@@ -151,6 +167,7 @@ int run_run(const RunOptions& options) {
   const bool checkpoints = plan.record.checkpoint_minutes > 0;
   if (!plan.resume) {
     forget_checkpoints(plan);  // of another run, with --force
+    for (const std::uint64_t seed : scenario.seeds) Checkpoints::remove_pile_from(folder_of(out, seed));
     scree::write_text_file(out / "scenario.yaml", scenario.resolved_yaml);
     if (checkpoints) write_record(out, plan.record);
   }
@@ -171,11 +188,14 @@ int run_run(const RunOptions& options) {
     settings.checkpoint_minutes = plan.record.checkpoint_minutes;
     settings.resume = plan.resume;
     settings.keep_finished = runs.size() > 1;
+    settings.pile = pile_hash(scenario);
+    settings.keep_pile = plan.record.keep_pile;
     for (int w = 0; w < side_by_side; ++w)
       workers.emplace_back([&] {
         for (std::size_t k = next++; k < runs.size() && !interrupted; k = next++) {
           SeedSettings own = settings;
-          own.folder = folder_of(plan, runs[k].seed);
+          own.folder = folder_of(out, runs[k].seed);
+          if (!plan.pile.empty()) own.read_pile = folder_of(plan.pile, runs[k].seed);
           run_seed(scenario, runs[k], own, display, k);
         }
       });

@@ -39,10 +39,18 @@ std::string scenario_hash(const scree::Scenario& scenario) {
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
+std::string pile_hash(const scree::Scenario& scenario) {
+  return scree::run_request(scenario, 0, scree::results_version(), asset_dir()).pile;
+}
+
 void write_record(const fs::path& folder, const RunRecord& r) {
-  const nlohmann::ordered_json json = {
-      {"program", r.program}, {"scenario", r.scenario},         {"name", r.name},
-      {"seeds", r.seeds},     {"summary_only", r.summary_only}, {"checkpoint_minutes", r.checkpoint_minutes}};
+  const nlohmann::ordered_json json = {{"program", r.program},
+                                       {"scenario", r.scenario},
+                                       {"name", r.name},
+                                       {"seeds", r.seeds},
+                                       {"summary_only", r.summary_only},
+                                       {"checkpoint_minutes", r.checkpoint_minutes},
+                                       {"keep_pile", r.keep_pile}};
   scree::write_text_file(record_in(folder), json.dump(2) + "\n");
 }
 
@@ -57,8 +65,8 @@ RunRecord read_record(const fs::path& folder) {
   }
   try {
     const nlohmann::json json = nlohmann::json::parse(in);
-    return {json.at("program"), json.at("scenario"),     json.at("name"),
-            json.at("seeds"),   json.at("summary_only"), json.at("checkpoint_minutes")};
+    return {json.at("program"),      json.at("scenario"),           json.at("name"),     json.at("seeds"),
+            json.at("summary_only"), json.at("checkpoint_minutes"), json.at("keep_pile")};
   } catch (const nlohmann::json::exception&) {
     throw std::runtime_error(fmt::format("{}: damaged; start anew from scenario.yaml with another --out",
                                          record_in(folder).string()));

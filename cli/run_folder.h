@@ -16,6 +16,7 @@ struct RunRecord {
   std::vector<std::uint64_t> seeds;
   bool summary_only = false;
   double checkpoint_minutes = 0;
+  bool keep_pile = false;
 };
 
 /// Version of this program as checkpoints name it: no other build goes on from them.
@@ -24,6 +25,9 @@ std::string program_version();
 /// Hash of a scenario as it is in a run folder, with the grading and the meshes themselves. Throws
 /// std::runtime_error if a file cannot be read.
 std::string scenario_hash(const scree::Scenario& scenario);
+
+/// The same without effects on measurement, of any seeds: runs of the same can read each other's piles.
+std::string pile_hash(const scree::Scenario& scenario);
 
 /// Writes resume.json. Throws std::runtime_error.
 void write_record(const std::filesystem::path& folder, const RunRecord& record);

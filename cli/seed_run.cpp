@@ -79,13 +79,16 @@ void simulate(const scree::Scenario& scenario, SeedRun& run, const SeedSettings&
         scree::analyse(scenario, run.seed, std::move(outcome), std::move(flow)));
   };
 
+  const auto read = [&](scree::CheckpointReader& finished) {
+    finished.state()(outcome);
+    if (flow) finished.state()(*flow);
+    put_away();
+  };
+  if (!settings.read_pile.empty())
+    return read(*Checkpoints(settings.read_pile, header, 0).pile(settings.pile));
   std::unique_ptr<scree::CheckpointReader> saved;
   if (settings.resume) {
-    if (const auto finished = checkpoints.finished(warn)) {
-      finished->state()(outcome);
-      if (flow) finished->state()(*flow);
-      return put_away();
-    }
+    if (const auto finished = checkpoints.finished(warn)) return read(*finished);
     saved = checkpoints.newest(warn);
     display.say(saved ? fmt::format("seed {} goes on from t = {:.1f} s", run.seed, saved->header().time)
                       : fmt::format("seed {} begins at its beginning: it has no checkpoint", run.seed));
@@ -137,11 +140,14 @@ void simulate(const scree::Scenario& scenario, SeedRun& run, const SeedSettings&
   outcome = scree::run_scenario(scenario, run.seed, settings.threads, hooks);
   try {
     trajectory.close();
+    const auto write = [&](scree::StateWriter& writer) {
+      writer(outcome);
+      if (flow) writer(*flow);
+    };
+    if (settings.keep_pile && !outcome.interrupted)
+      checkpoints.keep_pile(settings.pile, outcome.simulated_seconds, write);
     if (checkpoints.on() && settings.keep_finished && !outcome.interrupted)
-      checkpoints.finish(outcome.simulated_seconds, [&](scree::StateWriter& writer) {
-        writer(outcome);
-        if (flow) writer(*flow);
-      });
+      checkpoints.finish(outcome.simulated_seconds, write);
   } catch (const std::exception& error) {
     run.failure = error.what();  // of a file; the pile itself is good
   }

@@ -27,8 +27,11 @@ struct SeedSettings {
   std::filesystem::path folder;        ///< of this seed
   scree::CheckpointHeader checkpoint;  ///< but for the seed and the time
   double checkpoint_minutes = 0;
-  bool resume = false;         ///< go on with what is in the folder
-  bool keep_finished = false;  ///< other seeds may still be running when the program is killed
+  bool resume = false;              ///< go on with what is in the folder
+  bool keep_finished = false;       ///< other seeds may still be running when the program is killed
+  std::string pile;                 ///< hash of the pile (RunRequest), but for the seed
+  bool keep_pile = false;           ///< in the folder
+  std::filesystem::path read_pile;  ///< folder of this seed with its pile, to be read; empty: simulate
 };
 
 /// Fills in `run`; what goes wrong is told there.

@@ -240,7 +240,7 @@ bool holds(const Hypothesis& larger, const Hypothesis& smaller) {
 DiagnosisVerdict verdict_of(const Diagnosis& d) {
   using Kind = DiagnosisVerdict::Kind;
   if (d.nominal.p > kNothingAbove) return {Kind::nothing, {}};
-  if (d.calibration.gap.p > kFitsAbove) return {Kind::calibration, {}};
+  if (explains(d.calibration)) return {Kind::calibration, {}};
   const auto& all = d.judgements;
   std::size_t first = all.size();
   double unknown = 0;
@@ -250,7 +250,8 @@ DiagnosisVerdict verdict_of(const Diagnosis& d) {
   }
   // What re-calibration leaves may still be chance: anything else must be much more probable.
   const double leading = std::max(unknown, first < all.size() ? all[first].probability : 0);
-  if (d.calibration.probability * kApartBy > leading) return {Kind::calibration, {}};
+  if (!d.calibration.refuted && d.calibration.probability * kApartBy > leading)
+    return {Kind::calibration, {}};
   if (first == all.size() || unknown > all[first].probability) return {Kind::unknown, {}};
   DiagnosisVerdict verdict{Kind::effect, {first}};
   for (std::size_t k = 0; k < all.size(); ++k)
@@ -308,7 +309,8 @@ std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Judgement&
   return points;
 }
 
-Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model) {
+Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model,
+                   const Contradicted& contradicted) {
   Diagnosis d;
   d.measured = measured;
   const WorkingCovariance working = working_covariance(measured, model.surfaces());
@@ -328,10 +330,12 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
     return ones[a].evidence.log_evidence > ones[b].evidence.log_evidence;
   });
   // Two effects are for what none explains alone.
-  const bool one_explains =
-      std::any_of(ones.begin(), ones.end(), [](const Judgement& j) { return j.gap.p > kNothingAbove; });
+  const bool one_explains = std::any_of(ones.begin(), ones.end(), [&](const Judgement& j) {
+    return j.gap.p > kNothingAbove && !contradicted.contains(j.hypothesis.effects);
+  });
+  const bool calibration_explains = d.calibration.gap.p > kFitsAbove && !contradicted.contains({});
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  if (d.calibration.gap.p <= kFitsAbove && !one_explains)
+  if (!calibration_explains && !one_explains)
     for (std::size_t k = 0; k < std::min(kPairsOfBest, count); ++k)
       for (std::size_t e = 0; e < count; ++e) {
         const std::pair<std::size_t, std::size_t> pair(std::min(order[k], e), std::max(order[k], e));
@@ -384,7 +388,7 @@ void refute(Diagnosis& d, std::size_t judgement, const std::optional<Gap>& gap) 
   for (const Judgement& j : d.judgements) rest += j.probability;
   for (Judgement& j : d.judgements) {
     if (rest > 0) j.probability /= rest;
-    if (j.hypothesis.effects.empty() && !j.hypothesis.unknown) d.calibration.probability = j.probability;
+    if (j.hypothesis.effects.empty() && !j.hypothesis.unknown) d.calibration = j;
   }
   sort_by_probability(d.judgements);
   d.verdict = verdict_of(d);

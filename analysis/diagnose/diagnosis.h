@@ -3,6 +3,7 @@
 // can, and what cannot be told.
 #include <Eigen/Dense>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -120,8 +121,14 @@ class LearntModel {
 /// worth learning more. They depend on the judgement alone.
 std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Judgement& judgement, int count);
 
-/// Finds, re-calibrates and names.
-Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model);
+/// Effects of hypotheses that full simulations have contradicted, however well surfaces fit; empty: those of
+/// the base model alone.
+using Contradicted = std::set<std::vector<std::size_t>>;
+
+/// Finds, re-calibrates and names. Pairs are tried where no effect explains the data that is not
+/// contradicted.
+Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model,
+                   const Contradicted& contradicted = {});
 
 /// Full simulations at a judgement's best parameters leave `gap` and contradict it, or none could be done
 /// (nothing): its probability goes to the others in proportion. Says anew what is named; the order of

@@ -12,9 +12,10 @@ namespace scree {
 namespace {
 
 constexpr int kFirst = 768, kStage = 384;  // samples: of the prior, of each stage
-constexpr int kLastStages = 3;             // at full temperature; the evidence is theirs
+constexpr int kLastStages = 3;             // at full temperature, good ones; the evidence is theirs
 constexpr int kMostStages = 30;
 constexpr double kLeastShare = 0.15;  // of samples that must count, for a step of temperature
+constexpr double kGoodShare = 0.01;   // of a stage at full temperature; less: the posterior was missed
 constexpr double kWiden = 1.3;        // covariance of the proposal over that of the samples
 constexpr double kDefensive = 0.1;    // share of the proposal that is the prior
 constexpr double kFreedom = 5;        // of Student's t
@@ -145,22 +146,21 @@ Evidence integrate(const std::function<double(const Eigen::VectorXd&)>& log_like
     for (Eigen::Index j = 0; j < d; ++j) x[j] = box.low[j] + random.uniform() * (box.high[j] - box.low[j]);
     samples.push_back({x, log_likelihood(x), log_prior});
   }
-  double temperature = 0;
-  int last = 0;
+  int good = 0;
   std::vector<std::vector<Sample>> full;  // stages at full temperature
   std::vector<Proposal> proposals;        // of them
-  for (int stage = 0; stage < kMostStages && last < kLastStages; ++stage) {
-    if (temperature < 1) {
-      const auto share = [&](double t) { return effective_share(log_weights(samples, t, log_prior)); };
-      double low = temperature, high = 1;
-      if (share(1) >= kLeastShare || stage == kMostStages - kLastStages - 1)
-        low = 1;
-      else
-        for (int k = 0; k < 30; ++k) {
-          const double middle = 0.5 * (low + high);
-          (share(middle) >= kLeastShare ? low : high) = middle;
-        }
-      temperature = std::max(low, temperature + 1e-6);
+  for (int stage = 0; stage < kMostStages && good < kLastStages; ++stage) {
+    // The highest at which enough samples count; once it is full it is lowered only where a stage has just
+    // found a peak that its proposal had missed.
+    const auto share = [&](double t) { return effective_share(log_weights(samples, t, log_prior)); };
+    double temperature = 1;
+    if (share(1) < (full.empty() ? kLeastShare : kGoodShare) && stage < kMostStages - kLastStages) {
+      double low = 1e-6, high = 1;
+      for (int k = 0; k < 30; ++k) {
+        const double middle = 0.5 * (low + high);
+        (share(middle) >= kLeastShare ? low : high) = middle;
+      }
+      temperature = low;
     }
     const Proposal proposal = proposal_of(samples, log_weights(samples, temperature, log_prior), box);
     samples.clear();
@@ -168,11 +168,10 @@ Evidence integrate(const std::function<double(const Eigen::VectorXd&)>& log_like
       const Eigen::VectorXd x = proposal.draw(random);
       samples.push_back({x, inside(x, box) ? log_likelihood(x) : kNever, proposal.log_density(x)});
     }
-    if (temperature >= 1) {
-      full.push_back(samples);
-      proposals.push_back(proposal);
-      ++last;
-    }
+    if (temperature < 1) continue;
+    full.push_back(samples);
+    proposals.push_back(proposal);
+    if (share(1) >= kGoodShare) ++good;
   }
   // Every sample of the last stages, as if drawn from the mixture of their proposals.
   std::vector<double> logs;

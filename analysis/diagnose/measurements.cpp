@@ -1,6 +1,7 @@
 #include "analysis/diagnose/measurements.h"
 
 #include <algorithm>
+#include <boost/math/special_functions/digamma.hpp>
 #include <cmath>
 #include <limits>
 #include <regex>
@@ -9,6 +10,12 @@ namespace scree {
 namespace {
 
 constexpr double kPriorRepeats = 10;  // what the simulation's scatter counts, in repeats
+constexpr double kLeastRatio = 1e-3;  // of a measured variance to the simulation's: repeats that were rounded
+
+// Expected logarithm of chi-square of so many degrees of freedom, over them.
+double expected_log(double freedom) {
+  return boost::math::digamma(0.5 * freedom) - std::log(0.5 * freedom);
+}
 
 bool scatter_is_stated(const Measurements& measured, Eigen::Index k) {
   const MeasuredValue& value = measured.values[static_cast<std::size_t>(k)];
@@ -54,11 +61,12 @@ WorkingCovariance working_covariance(const Measurements& measured,
       const MeasuredValue& value = measured.values[static_cast<std::size_t>(all[c])];
       free.push_back(c);
       const double nu = *value.repeats - 1;
-      weighted += nu * *value.std * *value.std / seeds(k, k);
+      const double here = std::max(*value.std * *value.std / seeds(k, k), kLeastRatio);
+      weighted += nu * (std::log(here) - expected_log(nu));
       weight += nu;
     }
     if (free.empty()) continue;
-    const double ratio = weighted / weight;
+    const double ratio = std::exp(weighted / weight);  // of logarithms: one odd number moves it little
     freedom += weight;
     for (const std::size_t a : free)
       for (const std::size_t b : free) {

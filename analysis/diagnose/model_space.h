@@ -29,6 +29,7 @@ struct CandidateEffect {
   double absent = 0;              ///< amplitude at which it does nothing
   std::vector<EffectAxis> axes;   ///< the amplitude first; others have a range
   std::vector<std::string> acts;  ///< experiments in which it changes anything
+  bool measures = false;          ///< it changes how a pile is measured, and not the pile
 
   double scale() const;
   double amplitude(double coordinate) const { return absent + coordinate * scale(); }

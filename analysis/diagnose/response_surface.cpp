@@ -28,6 +28,30 @@ constexpr double kLogHatMean = -3, kLogHatStd = 1.5;  // hats are for what polyn
 constexpr int kMostSweeps = 6;
 constexpr double kTiny = 1e-12;  // against rounding: of what is above 0 by its nature
 
+// Correlation of the scatter of two readings of one pile. They differ by what an effect on measurement does
+// to this pile and not to others of its kind.
+constexpr double kSamePile = 0.9;
+
+// Turns rows that are correlated as readings of the same piles are into uncorrelated ones.
+class Whitening {
+ public:
+  explicit Whitening(const std::vector<DesignRun>& runs) {
+    const auto n = static_cast<Eigen::Index>(runs.size());
+    Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < i; ++j) {
+        const std::string& pile = runs[static_cast<std::size_t>(i)].pile;
+        if (!pile.empty() && pile == runs[static_cast<std::size_t>(j)].pile)
+          correlation(i, j) = correlation(j, i) = kSamePile;
+      }
+    factor_.compute(correlation);
+  }
+  Eigen::MatrixXd operator()(const Eigen::MatrixXd& rows) const { return factor_.matrixL().solve(rows); }
+
+ private:
+  Eigen::LLT<Eigen::MatrixXd> factor_;
+};
+
 // 1 at the knot, 0 from its neighbours on; knots of negative amplitudes are negative.
 double hat(double amplitude, int knot) {
   return std::max(0.0, 1 - std::abs((kHats + 1) * amplitude - knot));
@@ -138,8 +162,10 @@ ResponseSurface::Fit ResponseSurface::fit(const Features& features, const Eigen:
   const Eigen::Index n = features.all.rows(), k = features.all.cols();
   Eigen::VectorXd size = Eigen::VectorXd::Ones(groups_);
   const auto factor = [&] {
-    Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(n, n, kConstant * kConstant);
-    covariance.diagonal().array() += 1;
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(n, n);
+    for (Eigen::Index t = 0; t < k; ++t)
+      if (terms_[static_cast<std::size_t>(t)].group < 0)
+        covariance.selfadjointView<Eigen::Lower>().rankUpdate(features.all.col(t), kConstant * kConstant);
     for (Eigen::Index g = 0; g < groups_; ++g) {
       const Eigen::MatrixXd& v = features.groups[static_cast<std::size_t>(g)].at_runs;
       if (v.cols() > 0) covariance.selfadjointView<Eigen::Lower>().rankUpdate(v, size[g] * size[g]);
@@ -251,6 +277,8 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
     for (std::size_t t = 0; t < which.size(); ++t) features.all(i, which[t]) = value[t];
     y.row(i) = run.outputs.transpose();
   }
+  const Whitening white(runs);
+  features.all = white(features.all);
   for (int g = 0; g < groups_; ++g) {
     std::vector<double> prior;
     Group group;
@@ -264,8 +292,8 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
     features.groups.push_back(std::move(group));
   }
   centre_ = y.colwise().mean();
-  const Eigen::MatrixXd off = y.rowwise() - centre_.transpose();
-  Eigen::VectorXd unit = (off.colwise().squaredNorm() / static_cast<double>(n)).cwiseSqrt();
+  const Eigen::MatrixXd about = y.rowwise() - centre_.transpose(), off = white(about);
+  Eigen::VectorXd unit = (about.colwise().squaredNorm() / static_cast<double>(n)).cwiseSqrt();
   for (Eigen::Index j = 0; j < p; ++j) unit[j] = unit[j] > 0 ? unit[j] : 1.0;
 
   // Correlation of the scatter, from each output on its own; drawn towards none as far as the data are few.

@@ -7,7 +7,8 @@
 // with the effect's other parameters and with the amplitudes of other effects; and hats along the amplitude,
 // for effects that have done all they can before the end of their range. An effect that is absent
 // changes nothing. How large the coefficients of the base and of each effect are a priori, and how large the
-// scatter is, are those of the largest marginal likelihood. Outputs of one run are correlated: the
+// scatter is, are those of the largest marginal likelihood. Readings of one pile share nearly all of their
+// scatter. Outputs of one run are correlated: the
 // polynomials are those of combinations of the outputs whose scatter is not.
 // Source: Rasmussen & Williams, Gaussian Processes for Machine Learning (2006), 2.1 and 5.4; Higdon et al.,
 // J. Am. Stat. Assoc. 103 (2008), for several outputs.
@@ -24,6 +25,7 @@ namespace scree {
 struct DesignRun {
   ModelPoint at;
   Eigen::VectorXd outputs;  ///< finite
+  std::string pile = {};    ///< runs of one pile are readings of one simulation; empty: its own
 };
 
 /// Mean over many seeds, and how well it is known.

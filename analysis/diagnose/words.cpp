@@ -76,9 +76,13 @@ std::string answer(const DiagnosisOutcome& o) {
                          d.measured.values.size(), base_in_words(o.space, d.calibration));
     case Kind::unknown:
       return fmt::format(
-          "Something is missing that is not among the {} effects looked for: none of them explains the data, "
-          "alone or with a second one.",
-          o.space.effects.size());
+          "Something is missing that is not among the {} effects looked for: none of them explains the "
+          "data{}.",
+          o.space.effects.size(),
+          std::any_of(d.judgements.begin(), d.judgements.end(),
+                      [](const Judgement& j) { return j.hypothesis.effects.size() > 1; })
+              ? ", alone or with a second one"
+              : " alone; pairs were not tried");
     case Kind::effect: {
       const Judgement& first = d.judgements[d.verdict.named.front()];
       return fmt::format("What is missing is {}{}, with probability {}: {}.",

@@ -112,6 +112,17 @@ std::vector<PlannedRun> design_of(const ModelSpace& space, const SimulationCount
     const CandidateEffect& effect = space.effects[e];
     const std::size_t others = effect.axes.size() - 1;
     const std::uint64_t own = hash_of(effect.name);
+    if (effect.measures) {
+      for (std::size_t k = 0;
+           const auto& unit : latin_hypercube(counts.base, static_cast<int>(1 + others), own)) {
+        const PlannedRun& plain = runs[static_cast<std::size_t>(counts.nominal) + k++];
+        Eigen::VectorXd at(static_cast<Eigen::Index>(1 + others));
+        at << amplitude(effect, static_cast<int>(unit[0] * counts.base), counts.base),
+            coordinates(unit, 1, others);
+        runs.push_back({{plain.at.base, {{e, at}}}, plain.seed});
+      }
+      continue;
+    }
     seed = kEffectSeeds + own % 100 * kSeedsOfOneEffect;
     auto points = latin_hypercube(counts.effect, static_cast<int>(p + others), own);
     for (int k = 0; k < counts.effect; ++k) {
@@ -150,7 +161,8 @@ GatheredRuns gather(const ExperimentRuns& planned, const std::vector<std::option
   GatheredRuns gathered;
   for (std::size_t k = 0; k < planned.runs.size(); ++k) {
     const auto& result = results[k];
-    DesignRun run{planned.runs[k].at, Eigen::VectorXd(static_cast<Eigen::Index>(outputs.size()))};
+    DesignRun run{planned.runs[k].at, Eigen::VectorXd(static_cast<Eigen::Index>(outputs.size())),
+                  planned.requests[k].pile};
     bool good = result && result->state == RunState::done && result->at_rest();
     for (std::size_t c = 0; good && c < outputs.size(); ++c) {
       const auto found = result->outputs.find(outputs[c]);
@@ -260,7 +272,7 @@ void DiagnosisSession::learn_from(const std::vector<ExperimentRuns>& runs, const
     for (DesignRun& each : gathered.runs) learnt_[e].push_back(std::move(each));
     for (std::size_t k = 0; k < here.size(); ++k)
       if (here[k] && here[k]->state == RunState::done && here[k]->at_rest())
-        everything_[e].emplace_back(runs[e].runs[k].at, here[k]->outputs);
+        everything_[e].push_back({runs[e].runs[k].at, here[k]->outputs, runs[e].requests[k].pile});
   }
 }
 
@@ -326,16 +338,17 @@ std::vector<NextMeasurement> DiagnosisSession::tell_apart(const DiagnosisOutcome
     std::set<std::string> measured, names;
     for (const MeasuredValue& value : data_.measured.values)
       if (value.experiment == e) measured.insert(value.output);
-    for (const auto& [at, outputs] : everything_[e])
-      for (const auto& [name, value] : outputs) names.insert(name);
+    for (const WholeRun& each : everything_[e])
+      for (const auto& [name, value] : each.outputs) names.insert(name);
     for (const std::string& name : names) {
       if (measured.contains(name) || name == "particles" || name == "at_rest" || name == "sections" ||
           name == "dumps")
         continue;
       std::vector<DesignRun> runs;
-      for (const auto& [at, outputs] : everything_[e])
-        if (const auto found = outputs.find(name); found != outputs.end() && std::isfinite(found->second))
-          runs.push_back({at, Eigen::VectorXd::Constant(1, found->second)});
+      for (const WholeRun& each : everything_[e])
+        if (const auto found = each.outputs.find(name);
+            found != each.outputs.end() && std::isfinite(found->second))
+          runs.push_back({each.at, Eigen::VectorXd::Constant(1, found->second), each.pile});
       const auto plain =
           std::count_if(runs.begin(), runs.end(), [](const auto& run) { return run.at.effects.empty(); });
       if (plain < ResponseSurface::least_base_runs(space_.base.size()) ||
@@ -445,13 +458,26 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     const SimulatedModel& simulated = shown.at(j.hypothesis.effects);
     return simulated_gap(d, model, simulated.mean, simulated.runs);
   };
+  // Simulations at the fitted values do not give the data, whatever surfaces say.
+  const auto contradicts = [&](const Judgement& j) {
+    return shown.contains(j.hypothesis.effects) && gap_shown(j).p <= kFitsAbove;
+  };
+  const auto contradicted = [&] {
+    Contradicted all;
+    for (const Judgement& j : d.judgements)
+      if (!j.hypothesis.unknown && contradicts(j)) all.insert(j.hypothesis.effects);
+    return all;
+  };
+  const auto not_calibration = [&] {
+    return d.calibration.gap.p <= kFitsAbove || contradicts(d.calibration);
+  };
   outcome.settled = d.verdict.kind == DiagnosisVerdict::Kind::nothing;
   for (int round = 0; round < kMostRounds && !outcome.settled; ++round) {
     ++outcome.rounds;
     std::vector<std::size_t> known;
     for (const auto& runs : learnt_) known.push_back(runs.size());
     bool fresh = show(d.calibration);
-    if (d.calibration.gap.p <= kFitsAbove) {
+    if (not_calibration()) {
       const std::vector<const Judgement*> worth = worth_simulating(d);
       for (const Judgement* j : worth) {
         if (!show(*j)) continue;
@@ -466,41 +492,42 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     }
     compare(model, known);
     model = learn();
-    Diagnosis again = diagnose(space_, data_.measured, model);
+    Diagnosis again = diagnose(space_, data_.measured, model, contradicted());
     const bool unchanged = same(d.verdict, again.verdict, d, again);
     d = std::move(again);
     outcome.settled = unchanged && is_shown(d.calibration);
     for (const Judgement* j : {best_effect(d), named_first(d)})
-      if (j != nullptr && d.calibration.gap.p <= kFitsAbove)
-        outcome.settled = outcome.settled && is_shown(*j);
+      if (j != nullptr && not_calibration()) outcome.settled = outcome.settled && is_shown(*j);
   }
-  // What its own simulations contradict is not named; they are of the last fit.
-  std::set<Effects> afresh;
-  for (std::size_t tried = 0; tried < d.verdict.named.size();) {
-    const std::size_t k = d.verdict.named[tried];
+  // What its own simulations contradict, those of the last fit and fresh ones, is not said.
+  const auto stands = [&](std::size_t k) {
     const Judgement& j = d.judgements[k];
     show(j);
-    std::optional<Gap> gap;
-    if (!not_to_be_shown.contains(j.hypothesis.effects)) {
-      gap = gap_shown(j);
-      if (gap->p > kFitsAbove) {
-        ++tried;
-        continue;
-      }
-      if (afresh.insert(j.hypothesis.effects).second) {
-        try {
-          shown.insert_or_assign(j.hypothesis.effects, simulate(j.best, run, outcome));
-          continue;
-        } catch (const TooFewRuns&) {
-        }
-      }
-      outcome.notes.push_back(fmt::format(
-          "{} is not named: full simulations with its fitted values do not give the data (p = {:.2g})",
-          name_of(space_, j.hypothesis), gap->p));
+    if (not_to_be_shown.contains(j.hypothesis.effects)) {
+      refute(d, k, std::nullopt);
+      return false;
     }
+    if (!contradicts(j)) return true;
+    try {
+      shown.insert_or_assign(j.hypothesis.effects, simulate(j.best, run, outcome));
+      if (!contradicts(j)) return true;
+    } catch (const TooFewRuns&) {
+    }
+    const Gap gap = gap_shown(j);
+    outcome.notes.push_back(fmt::format(
+        "{} is not named: full simulations with its fitted values do not give the data (p = {:.2g})",
+        name_of(space_, j.hypothesis), gap.p));
     refute(d, k, gap);
-    tried = 0;
-  }
+    return false;
+  };
+  if (d.verdict.kind == DiagnosisVerdict::Kind::calibration)
+    for (std::size_t k = 0; k < d.judgements.size(); ++k)
+      if (const Hypothesis& h = d.judgements[k].hypothesis; h.effects.empty() && !h.unknown) {
+        stands(k);
+        break;
+      }
+  for (std::size_t tried = 0; tried < d.verdict.named.size();)
+    tried = stands(d.verdict.named[tried]) ? tried + 1 : 0;
   outcome.nominal = nominal_of_design();
   outcome.nominal.gap = simulated_gap(d, model, outcome.nominal.mean, std::max(outcome.nominal.runs, 1));
   if (const auto calibrated = shown.find({}); calibrated != shown.end()) {

@@ -28,8 +28,9 @@ struct PlannedRun {
 };
 
 /// The simulations that a diagnosis needs whatever the data: nominal, over the base parameters, and of every
-/// effect. They depend on the model and the effects' names alone, so that all data of the same experiments
-/// share them, and leaving an effect out changes nothing for the others.
+/// effect; one on measurement reads the piles of those over the base parameters. They depend on the model and
+/// the effects' names alone, so that all data of the same experiments share them, and leaving an effect out
+/// changes nothing for the others.
 std::vector<PlannedRun> design_of(const ModelSpace& space, const SimulationCounts& counts);
 
 /// The runs of an experiment among these: those whose effects act in it, or that have none. Throws
@@ -93,10 +94,14 @@ class DiagnosisSession {
   std::vector<ExperimentRuns> design_;
   DesignRuns learnt_;
   std::vector<std::vector<Forecast>> forecasts_;  // by experiment
-  // All outputs of the simulations, for what was not measured; by experiment.
-  std::vector<std::vector<std::pair<ModelPoint, std::map<std::string, double>>>> everything_;
-  std::vector<std::string> failure_;  // the last of each experiment, why; empty without one
-  std::uint64_t checks_ = 0;          // seeds used for them
+  struct WholeRun {
+    ModelPoint at;
+    std::map<std::string, double> outputs;
+    std::string pile;
+  };
+  std::vector<std::vector<WholeRun>> everything_;  // for what was not measured; by experiment
+  std::vector<std::string> failure_;               // the last of each experiment, why; empty without one
+  std::uint64_t checks_ = 0;                       // seeds used for them
 };
 
 }  // namespace scree

@@ -46,6 +46,9 @@ class Ensemble {
       if (known && known->state == RunState::done) ++progress_.done;
       return failed || (known && known->state == RunState::done);
     });
+    std::error_code none;  // of one that was interrupted or killed
+    for (const auto& entry : fs::directory_iterator(piles_folder(), none))
+      piles_.insert(entry.path().filename().string());
   }
   ~Ensemble() {
     executor_.cancel();
@@ -57,6 +60,7 @@ class Ensemble {
       }
     }
     std::error_code ignored;
+    if (idle()) fs::remove_all(piles_folder(), ignored);
     fs::remove(work_folder(), ignored);  // if nobody works in it
   }
   Ensemble(const Ensemble&) = delete;
@@ -85,6 +89,9 @@ class Ensemble {
   bool idle() const { return waiting_.empty() && under_way_.empty() && left_to_others_.empty(); }
   fs::path work_folder() const { return store_.file().string() + ".work"; }
   fs::path folder_of(const std::string& key) const { return work_folder() / key; }
+  // Piles that runs still waiting can read are kept in run folders by their hash.
+  fs::path piles_folder() const { return work_folder() / "piles"; }
+  fs::path pile_of(const RunRequest& run) const { return piles_folder() / run.pile; }
   void forget_folder(const std::string& key) const {
     std::error_code ignored;
     fs::remove_all(folder_of(key), ignored);
@@ -103,9 +110,11 @@ class Ensemble {
       waiting_.swap(left_to_others_);
       looked_ = now();
     }
-    while (!waiting_.empty() && executor_.free_places() > 0) {
-      const RunRequest& run = *waiting_.front();
-      waiting_.erase(waiting_.begin());
+    while (executor_.free_places() > 0) {
+      const auto next = next_to_start();
+      if (next == waiting_.end()) return;
+      const RunRequest& run = **next;
+      waiting_.erase(next);
       switch (store_.claim(run, settings_.version, settings_.again && !tried_.contains(run.key))) {
         case Claim::done:
           ++progress_.done;
@@ -123,12 +132,48 @@ class Ensemble {
     }
   }
 
+  // One whose pile is there, so that readings follow their simulation; else the first whose pile is not just
+  // being made.
+  std::vector<const RunRequest*>::iterator next_to_start() {
+    const auto read = std::find_if(waiting_.begin(), waiting_.end(),
+                                   [&](const RunRequest* run) { return piles_.contains(run->pile); });
+    if (read != waiting_.end()) return read;
+    return std::find_if(waiting_.begin(), waiting_.end(), [&](const RunRequest* run) {
+      return run->pile.empty() || std::none_of(under_way_.begin(), under_way_.end(), [&](const auto& other) {
+               return other.second->pile == run->pile;
+             });
+    });
+  }
+
+  // Whether a run still to come could read the pile of this one.
+  bool shares_pile(const RunRequest& run) const {
+    const auto same = [&](const RunRequest* other) { return other->pile == run.pile; };
+    return !run.pile.empty() && (std::any_of(waiting_.begin(), waiting_.end(), same) ||
+                                 std::any_of(left_to_others_.begin(), left_to_others_.end(), same));
+  }
+
+  // Puts a run's pile where others find it, and takes away one that nobody will read.
+  void sort_piles(const RunRequest& run) {
+    std::error_code error;
+    const fs::path seed = fmt::format("seed_{}", run.seed), kept = pile_of(run) / seed / "pile",
+                   fresh = folder_of(run.key) / "run" / seed / "pile";
+    if (!shares_pile(run)) {
+      if (piles_.erase(run.pile) > 0) fs::remove_all(pile_of(run), error);
+      return;
+    }
+    if (!fs::exists(fresh, error)) return;
+    fs::create_directories(kept.parent_path(), error);
+    fs::rename(fresh, kept, error);
+    if (!error) piles_.insert(run.pile);
+  }
+
   void start(const RunRequest& run) {
     under_way_[run.key] = &run;
     tried_.insert(run.key);
     const fs::path folder = folder_of(run.key);
-    if (has_checkpoint(run.key) && !refused_.contains(run.key))
-      return executor_.start({run.key, folder, true});
+    const bool read = piles_.contains(run.pile), keep = !read && shares_pile(run);
+    if (!read && has_checkpoint(run.key) && !refused_.contains(run.key))
+      return executor_.start({run.key, folder, true, keep, {}});
     std::error_code error;
     fs::remove_all(folder, error);  // of one that was killed
     // Another program that has just ended may take the empty parent away in between.
@@ -136,12 +181,14 @@ class Ensemble {
     }
     if (error) fail_to_write(folder, error.message());
     write_text_file(folder / "scenario.yaml", run.scenario);
-    executor_.start({run.key, folder, false});
+    if (read) reading_.insert(run.key);
+    executor_.start({run.key, folder, false, keep, read ? pile_of(run) : fs::path()});
   }
 
   void settle(const EndedJob& ended) {
     const RunRequest* request = under_way_.at(ended.key);
     under_way_.erase(ended.key);
+    const bool was_reading = reading_.erase(ended.key) > 0;
     std::string failure = ended.message, text;
     std::map<std::string, double> outputs;
     double seconds = ended.wall_seconds;
@@ -159,6 +206,15 @@ class Ensemble {
         failure = error.what();
       }
     }
+    if (ended.end == JobEnd::refused && was_reading) {  // a pile that was damaged: it is made anew
+      std::error_code ignored;
+      piles_.erase(request->pile);
+      fs::remove_all(pile_of(*request), ignored);
+      forget_folder(ended.key);
+      store_.release(ended.key);
+      waiting_.insert(waiting_.begin(), request);
+      return;
+    }
     if (ended.end == JobEnd::refused && ended.resumed) {
       // Of another version of the program, or of another run: it begins anew.
       refused_.insert(ended.key);
@@ -169,6 +225,7 @@ class Ensemble {
       waiting_.insert(waiting_.begin(), request);
       return;
     }
+    sort_piles(*request);
     // A run that was killed or lacked memory or disk has left its checkpoint, one that blew up has not.
     const bool may_go_on = ended.end != JobEnd::good && has_checkpoint(ended.key);
     if (ended.end == JobEnd::interrupted) {
@@ -194,8 +251,9 @@ class Ensemble {
   EnsembleSettings settings_;
   std::vector<const RunRequest*> waiting_, left_to_others_;
   std::map<std::string, const RunRequest*> under_way_;
-  std::map<std::string, int> interrupted_;  // how often, by key
-  std::set<std::string> tried_, refused_;
+  std::map<std::string, int> interrupted_;           // how often, by key
+  std::set<std::string> tried_, refused_, reading_;  // keys
+  std::set<std::string> piles_;                      // that are there
   double looked_ = 0;
   EnsembleProgress progress_;
 };

@@ -14,6 +14,8 @@ struct Job {
   std::string key;
   std::filesystem::path folder;  ///< holds scenario.yaml
   bool resume = false;           ///< go on with what is in folder/run
+  bool keep_pile = false;        ///< leave the finished pile in folder/run
+  std::filesystem::path pile;    ///< run folder with the finished pile, to be read instead; empty: simulate
 };
 
 /// `refused`: bad input, nothing was simulated. `interrupted`: by a signal to all, as when the machine is

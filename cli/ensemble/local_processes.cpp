@@ -81,6 +81,8 @@ void LocalProcesses::start(const Job& job) {
                     out = (job.folder / "run").string(), log = (job.folder / "log.txt").string();
   std::vector<std::string> words{program, "run", scenario, "--out", out};
   if (job.resume) words = {program, "run", "--resume", out};
+  if (job.keep_pile && !job.resume) words.emplace_back("--keep-pile");  // one that goes on knows it
+  if (!job.pile.empty()) words.insert(words.end(), {"--pile", job.pile.string()});
   for (const char* word : {"--threads", "1", "--summary-only", "--checkpoint-minutes"})
     words.emplace_back(word);
   words.push_back(fmt::format("{}", checkpoint_minutes_));

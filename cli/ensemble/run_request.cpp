@@ -64,7 +64,12 @@ RunRequest run_request(Scenario scenario, std::uint64_t seed, const std::string&
   std::string bullet;  // "equivalent" in the scenario stands for these
   if (scenario.bullet)
     bullet = fmt::format("bullet {} {}\n", scenario.bullet->friction, scenario.bullet->rolling);
-  request.key = hash_of("scree " + version + "\n" + bullet + write_scenario(scenario, asset_dir));
+  const auto key = [&] {
+    return hash_of("scree " + version + "\n" + bullet + write_scenario(scenario, asset_dir));
+  };
+  request.key = key();
+  std::erase_if(scenario.effects, [](const EffectUse& use) { return use.effect->measures; });
+  request.pile = key();
   return request;
 }
 

@@ -17,7 +17,8 @@ std::string results_version();
 
 /// The scenario with this seed alone, without what changes no result (title, reference cases, frames). Its
 /// key is a hash of that text, of `version`, and of the grading and the meshes themselves: renaming a file
-/// changes nothing, another content does. Throws std::runtime_error if a file cannot be read.
+/// changes nothing, another content does; `pile` is that of the scenario without effects on measurement.
+/// Throws std::runtime_error if a file cannot be read.
 RunRequest run_request(Scenario scenario, std::uint64_t seed, const std::string& version,
                        const std::filesystem::path& asset_dir);
 

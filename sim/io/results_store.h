@@ -21,6 +21,9 @@ struct RunRequest {
   std::string key;       ///< hash of all that follows and of the files it reads, 32 hexadecimal digits
   std::string scenario;  ///< resolved, with one seed, as YAML
   std::uint64_t seed = 0;
+  /// The same hash without effects on measurement: runs of the same pile are one simulation, read more than
+  /// once. Empty: shared with none.
+  std::string pile = {};
 };
 
 enum class RunState { running, done, failed };

@@ -203,6 +203,54 @@ TEST_F(ResumeCli, WhatCannotBeResumedIsRefusedWithExitCodeTwo) {
   EXPECT_THAT(resumed.text, HasSubstr("goes on from t = "));
 }
 
+// A pile that is read again with an effect on measurement gives what its own simulation would.
+TEST_F(ResumeCli, KeptPilesAreReadWithTheSameResults) {
+  const std::string blur = " --set effects.image_blur.width=0.4";
+  const auto kept = joined(words(in_folder("kept"), 2, "0")) + "--keep-pile";
+  ASSERT_EQ(call(kept).code, 0);
+  ASSERT_EQ(call(joined(words(in_folder("whole"), 2, "0")) + blur).code, 0);
+  const std::string read = joined(words(in_folder("read"), 2, "0")) + "--pile " + in_folder("kept");
+  const Called done = call(read + blur);
+  ASSERT_EQ(done.code, 0) << done.text;
+  const auto summary = [&](const std::string& run) {
+    return untimed(nlohmann::json::parse(slurp(folder / run / "summary.json")));
+  };
+  EXPECT_EQ(summary("read"), summary("whole"));
+  EXPECT_NE(summary("read"), summary("kept"));
+
+  const auto refused = [&](const std::string& command, const std::string& why) {
+    const Called bad = call(command);
+    EXPECT_EQ(bad.code, 2);
+    EXPECT_THAT(bad.text, HasSubstr(why));
+    EXPECT_EQ(std::count(bad.text.begin(), bad.text.end(), '\n'), 1) << bad.text;
+  };
+  fs::remove_all(folder / "read");
+  refused(read + " --set material.mu=0.3", "a pile of another scenario or seed");
+  refused(joined(words(in_folder("read"), 3, "0")) + "--pile " + in_folder("kept"), "no such pile");
+  refused(joined(words(in_folder("kept"), 2, "0")) + "--force --pile " + in_folder("kept"), "another --out");
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "kept"))
+    if (entry.path().filename() == "pile") flip(entry.path());
+  refused(read + blur, "pile: damaged");
+  EXPECT_FALSE(fs::exists(folder / "read")) << "nothing that looks like a run";
+
+  // A run that is killed and resumed keeps its pile all the same, and a new run takes the old one away.
+  Background run = start([&] {
+    auto all = words(in_folder("killed"), 1, kOften);
+    all.emplace_back("--keep-pile");
+    return all;
+  }());
+  run.ended_before([&] { return checkpoints_below(folder / "killed").size() >= 2; });
+  run.send(SIGKILL);
+  run.code();
+  ASSERT_EQ(call("run --resume " + in_folder("killed")).code, 0);
+  const Called again =
+      call(joined(words(in_folder("read"), 1, "0")) + "--pile " + in_folder("killed") + blur);
+  EXPECT_EQ(again.code, 0) << again.text;
+  EXPECT_EQ(call(joined(words(in_folder("killed"), 1, "0")) + "--force").code, 0);
+  fs::remove_all(folder / "read");
+  refused(joined(words(in_folder("read"), 1, "0")) + "--pile " + in_folder("killed"), "no such pile");
+}
+
 TEST_F(ResumeCli, ImpulseBeginsAnewAndSaysSo) {
   std::vector<std::string> command = words(in_folder("run"), 1, kOften);
   for (const char* value : {"engine=impulse", "experiment.mass_kg=1", "numerics.impulse_friction=0.2",

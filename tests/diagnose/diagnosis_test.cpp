@@ -272,5 +272,50 @@ TEST(ResponseSurface, FollowsAnEffectThatSaturates) {
   }
 }
 
+// Readings of one pile share its scatter: what an effect on measurement does is then known far better than
+// the scatter of one run allows, and the mean of the base model no better than its piles do.
+TEST(ResponseSurface, LearnsFromReadingsOfTheSamePiles) {
+  ModelSpace space;
+  space.base = {{"material.mu", 0, -1, 1}};
+  space.effects = {{"blur", "blur", 0, {{"effects.blur.width", "", 0, 1}}, {"one"}, true}};
+  constexpr int kWorlds = 40, kPiles = 12;
+  double together = 0, alone = 0, worst_change = 0;  // squares of errors
+  double mean_error = 0, mean_variance = 0;
+  for (int world = 0; world < kWorlds; ++world) {
+    Random random(static_cast<std::uint64_t>(world), 0, RandomPurpose::design);
+    std::vector<DesignRun> runs;
+    for (int k = 0; k < kPiles; ++k) {
+      const Eigen::VectorXd base = Eigen::VectorXd::Constant(1, -1 + 2 * (k + 0.5) / kPiles);
+      const double scatter = random.uniform(-1, 1);
+      const auto add = [&](double x) {
+        ModelPoint at{base, {}};
+        if (x > 0) at.effects.push_back({0, Eigen::VectorXd::Constant(1, x)});
+        const double y = 2 * base[0] + 0.6 * x + scatter + 0.1 * random.uniform(-1, 1);
+        runs.push_back({at, Eigen::VectorXd::Constant(1, y), "pile" + std::to_string(k)});
+      };
+      add(0);
+      add(static_cast<double>(1 + (5 * k) % kPiles) / kPiles);
+    }
+    const auto change = [&](const std::vector<DesignRun>& of) {
+      const ResponseSurface surface(space, "one", of);
+      const Eigen::VectorXd middle = Eigen::VectorXd::Zero(1);
+      const SurfacePrediction without = surface.at({middle, {}});
+      if (!of.front().pile.empty()) {
+        mean_error += without.mean[0] * without.mean[0];
+        mean_variance += without.covariance(0, 0);
+      }
+      return surface.at({middle, {{0, Eigen::VectorXd::Constant(1, 1)}}}).mean[0] - without.mean[0] - 0.6;
+    };
+    const double error = change(runs);
+    together += error * error;
+    worst_change = std::max(worst_change, std::abs(error));
+    for (DesignRun& run : runs) run.pile.clear();
+    alone += std::pow(change(runs), 2);
+  }
+  EXPECT_LT(together, 0.25 * alone) << "of " << kWorlds << " worlds";
+  EXPECT_LT(worst_change, 0.6);
+  EXPECT_LT(mean_error, 2 * mean_variance) << "the mean is not thought better known than it is";
+}
+
 }  // namespace
 }  // namespace scree

@@ -26,7 +26,7 @@ parameters:
 ties: {material.mu_r: material.mu}
 set: {effects.reference.diameter_m: 0.54}
 effects: [cohesion, sticky_tools, image_blur, section_borders]
-simulations: {nominal: 6, base: 14, effect: 9, check: 3}
+simulations: {nominal: 6, base: 22, effect: 9, check: 3}
 experiments:
   dump:
     scenario: SOURCE/scenarios/small_dump.yaml

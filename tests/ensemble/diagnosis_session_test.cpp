@@ -153,6 +153,32 @@ TEST_F(Session, TheDesignIsTheSameForAllDataAndWhenAnEffectIsLeftOut) {
   EXPECT_EQ(fewer.design()[0].requests.size(), keys.size() - 10);
 }
 
+TEST_F(Session, EffectsOnMeasurementReadThePilesOfTheBaseModel) {
+  std::ifstream in(folder / "model.yaml");
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  text.replace(text.find("restitution]"), 12, "image_blur]");
+  write_text_file(folder / "measuring.yaml", text);
+  const auto measuring = load_model(folder / "measuring.yaml", kAssets);
+  ASSERT_TRUE(measuring.errors.empty()) << measuring.errors.front().text();
+  const DiagnosisSession session(measuring.model, data_of({{"cohesion"}, 4, 5, 0.5, 8, ""}), {}, kAssets);
+  const ExperimentRuns& heap = session.design()[0];
+  std::set<std::string> piles, keys;
+  std::vector<double> widths;
+  for (std::size_t k = 0; k < heap.runs.size(); ++k) {
+    piles.insert(heap.requests[k].pile);
+    keys.insert(heap.requests[k].key);
+    for (const EffectAt& effect : heap.runs[k].at.effects)
+      if (session.space().effects[effect.effect].measures) widths.push_back(effect.amplitude());
+  }
+  EXPECT_EQ(keys.size(), 6u + 24 + 3 * 10 + 24);
+  EXPECT_EQ(piles.size(), 6u + 24 + 3 * 10) << "the readings need no simulation of their own";
+  ASSERT_EQ(widths.size(), 24u);
+  EXPECT_FALSE(std::is_sorted(widths.begin(), widths.end())) << "not tied to the base parameters";
+  std::sort(widths.begin(), widths.end());
+  for (std::size_t k = 0; k < widths.size(); ++k)
+    EXPECT_NEAR(widths[k], static_cast<double>(k + 1) / 24, 1e-12);
+}
+
 TEST_F(Session, TwinsHaveTheStrengthAskedForAndUseNoSeedOfTheDesign) {
   TwinTruth truth;
   data_of({{"twisting"}, 4, 5, 0.5, 9, ""}, &truth);

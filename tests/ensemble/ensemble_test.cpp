@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 
@@ -117,6 +118,47 @@ TEST_F(Runs, InterruptedOnesAreGivenBackAndEnd) {
   for (const RunRequest& run : requests) EXPECT_FALSE(store.find(run.key).has_value());
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
   EXPECT_FALSE(fs::exists(folder / "store.sqlite.work"));
+}
+
+// Readings of one pile: one of them simulates and keeps its pile, the others read it, and it is gone at last.
+// Those of a pile that no other run shares keep none.
+TEST_F(Runs, ReadingsOfOnePileAreOneSimulation) {
+  const auto say = [&](const std::string& body) {
+    return program(
+        "echo \"$n $(echo $* | grep -o -- '--keep-pile') $(echo $* | grep -o 'piles/[a-z]*')\" >> " +
+        (folder / "how").string() + "\n" + body);
+  };
+  const auto how = [&] {
+    std::ifstream in(folder / "how");
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    std::sort(lines.begin(), lines.end());
+    fs::remove(folder / "how");
+    return lines;
+  };
+  const std::string keep =
+      "case \"$*\" in *--keep-pile*) mkdir -p $4/seed_1; echo heap > $4/seed_1/pile;; esac; sleep 0.05";
+  for (const int k : {0, 2, 5}) requests[static_cast<std::size_t>(k)].pile = "one";
+  requests[1].pile = "other";
+  {
+    ResultsStore store(folder / "store.sqlite");
+    LocalProcesses processes(2, 5, say(keep));
+    const EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
+    EXPECT_EQ(end.done, 6u);
+    EXPECT_EQ(how(), (std::vector<std::string>{"0 --keep-pile ", "1  ", "2  piles/one", "3  ", "4  ",
+                                               "5  piles/one"}));
+    EXPECT_FALSE(fs::exists(folder / "store.sqlite.work"));
+  }
+  {  // A pile that is refused is made anew.
+    ResultsStore store(folder / "damaged.sqlite");
+    LocalProcesses processes(1, 5, say("case \"$*\" in *--pile*) echo damaged; exit 2;; esac; " + keep));
+    const EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
+    EXPECT_EQ(end.done, 6u);
+    EXPECT_EQ(end.failed, 0u);
+    EXPECT_EQ(how(), (std::vector<std::string>{"0 --keep-pile ", "1  ", "2  piles/one", "2 --keep-pile ",
+                                               "3  ", "4  ", "5  ", "5  piles/one"}));
+    EXPECT_FALSE(fs::exists(folder / "damaged.sqlite.work"));
+  }
 }
 
 // A program that makes a checkpoint, is interrupted there, and goes on from it when it is asked to.
