@@ -12,10 +12,11 @@ namespace scree {
 namespace {
 
 constexpr int kFirst = 768, kStage = 384;  // samples: of the prior, of each stage
-constexpr int kLastStages = 3;             // at full temperature, good ones; the evidence is theirs
-constexpr int kMostStages = 30;
+constexpr int kLastStages = 3;             // at full temperature; the evidence is theirs
+constexpr int kMostStages = 30;            // until then
+constexpr int kMostLastStages = 15;
+constexpr double kEnough = 150;       // samples that count, at full temperature; fewer: more stages
 constexpr double kLeastShare = 0.15;  // of samples that must count, for a step of temperature
-constexpr double kGoodShare = 0.01;   // of a stage at full temperature; less: the posterior was missed
 constexpr double kWiden = 1.3;        // covariance of the proposal over that of the samples
 constexpr double kDefensive = 0.1;    // share of the proposal that is the prior
 constexpr double kFreedom = 5;        // of Student's t
@@ -28,11 +29,24 @@ double log_sum(const std::vector<double>& logs) {
   return most + std::log(sum);
 }
 
-double effective_share(const std::vector<double>& log_weights) {
+// Samples that count.
+double effective(const std::vector<double>& log_weights) {
   const double all = log_sum(log_weights);
   double square = 0;
   for (const double w : log_weights) square += std::exp(2 * (w - all));
-  return 1 / (square * static_cast<double>(log_weights.size()));
+  return 1 / square;
+}
+
+// The highest temperature at which so many samples count.
+template <class LogWeights>
+double temperature_for(double least, const LogWeights& log_weights) {
+  double low = 1e-6, high = 1;
+  if (effective(log_weights(1.0)) >= least) return 1;
+  for (int k = 0; k < 30; ++k) {
+    const double middle = 0.5 * (low + high);
+    (effective(log_weights(middle)) >= least ? low : high) = middle;
+  }
+  return low;
 }
 
 // Student's t about a mean, mixed with the prior; normal numbers by Box and Muller.
@@ -146,56 +160,64 @@ Evidence integrate(const std::function<double(const Eigen::VectorXd&)>& log_like
     for (Eigen::Index j = 0; j < d; ++j) x[j] = box.low[j] + random.uniform() * (box.high[j] - box.low[j]);
     samples.push_back({x, log_likelihood(x), log_prior});
   }
-  int good = 0;
-  std::vector<std::vector<Sample>> full;  // stages at full temperature
-  std::vector<Proposal> proposals;        // of them
-  for (int stage = 0; stage < kMostStages && good < kLastStages; ++stage) {
-    // The highest at which enough samples count; once it is full it is lowered only where a stage has just
-    // found a peak that its proposal had missed.
-    const auto share = [&](double t) { return effective_share(log_weights(samples, t, log_prior)); };
-    double temperature = 1;
-    if (share(1) < (full.empty() ? kLeastShare : kGoodShare) && stage < kMostStages - kLastStages) {
-      double low = 1e-6, high = 1;
-      for (int k = 0; k < 30; ++k) {
-        const double middle = 0.5 * (low + high);
-        (share(middle) >= kLeastShare ? low : high) = middle;
-      }
-      temperature = low;
-    }
-    const Proposal proposal = proposal_of(samples, log_weights(samples, temperature, log_prior), box);
-    samples.clear();
+  const auto draw = [&](const Proposal& proposal) {
+    std::vector<Sample> drawn;
     for (int k = 0; k < kStage; ++k) {
       const Eigen::VectorXd x = proposal.draw(random);
-      samples.push_back({x, inside(x, box) ? log_likelihood(x) : kNever, proposal.log_density(x)});
+      drawn.push_back({x, inside(x, box) ? log_likelihood(x) : kNever, proposal.log_density(x)});
     }
-    if (temperature < 1) continue;
-    full.push_back(samples);
-    proposals.push_back(proposal);
-    if (share(1) >= kGoodShare) ++good;
+    return drawn;
+  };
+  double temperature = 0;
+  for (int stage = 0; temperature < 1; ++stage) {
+    const auto weights = [&](double t) { return log_weights(samples, t, log_prior); };
+    temperature = stage == kMostStages
+                      ? 1
+                      : std::max(temperature + 1e-6,
+                                 temperature_for(kLeastShare * static_cast<double>(samples.size()), weights));
+    if (temperature < 1) samples = draw(proposal_of(samples, weights(temperature), box));
   }
-  // Every sample of the last stages, as if drawn from the mixture of their proposals.
+  // The last stages: every sample as if drawn from the mixture of their proposals. A peak that they find late
+  // asks for more of them.
+  std::vector<Sample> last;
+  std::vector<Proposal> proposals;
   std::vector<double> logs;
-  std::vector<const Sample*> kept;
-  Evidence evidence;
-  double best = -std::numeric_limits<double>::infinity();
-  for (const auto& stage : full)
-    for (const Sample& s : stage) {
+  for (int stage = 0; stage < kMostLastStages && (stage < kLastStages || effective(logs) < kEnough);
+       ++stage) {
+    if (stage < kLastStages) {
+      proposals.push_back(proposal_of(samples, log_weights(samples, 1, log_prior), box));
+    } else {
+      const auto tempered = [&](double t) {
+        std::vector<double> all = logs;
+        for (std::size_t k = 0; k < all.size(); ++k)
+          if (last[k].log_likelihood > kNever) all[k] += (t - 1) * last[k].log_likelihood;
+        return all;
+      };
+      proposals.push_back(proposal_of(last, tempered(temperature_for(kLeastShare * kStage, tempered)), box));
+    }
+    samples = draw(proposals.back());
+    last.insert(last.end(), samples.begin(), samples.end());
+    logs.clear();
+    for (const Sample& s : last) {
       std::vector<double> densities;
       for (const Proposal& p : proposals) densities.push_back(p.log_density(s.at));
       const double mixture = log_sum(densities) - std::log(static_cast<double>(proposals.size()));
       logs.push_back(s.log_likelihood <= kNever ? kNever : s.log_likelihood + log_prior - mixture);
-      kept.push_back(&s);
-      if (s.log_likelihood > best) {
-        best = s.log_likelihood;
-        evidence.most_likely = s.at;
-      }
+    }
+  }
+  Evidence evidence;
+  double best = -std::numeric_limits<double>::infinity();
+  for (const Sample& s : last)
+    if (s.log_likelihood > best) {
+      best = s.log_likelihood;
+      evidence.most_likely = s.at;
     }
   const double all = log_sum(logs), count = static_cast<double>(logs.size());
   evidence.log_evidence = all - std::log(count);
-  evidence.samples.resize(static_cast<Eigen::Index>(kept.size()), d);
-  evidence.weights.resize(static_cast<Eigen::Index>(kept.size()));
-  for (std::size_t k = 0; k < kept.size(); ++k) {
-    evidence.samples.row(static_cast<Eigen::Index>(k)) = kept[k]->at.transpose();
+  evidence.samples.resize(static_cast<Eigen::Index>(last.size()), d);
+  evidence.weights.resize(static_cast<Eigen::Index>(last.size()));
+  for (std::size_t k = 0; k < last.size(); ++k) {
+    evidence.samples.row(static_cast<Eigen::Index>(k)) = last[k].at.transpose();
     evidence.weights[static_cast<Eigen::Index>(k)] = std::exp(logs[k] - all);
   }
   evidence.log_error = std::sqrt(std::max(evidence.weights.squaredNorm() - 1 / count, 0.0));

@@ -126,6 +126,48 @@ TEST_F(DiagnosisOf, WhatSimulationsContradictIsNotNamed) {
   EXPECT_NEAR(sum, 1, 1e-9);
 }
 
+// The same of re-calibration: what its own simulations contradict is not said, though surfaces explain it
+// all.
+TEST_F(DiagnosisOf, ACalibrationThatSimulationsContradictIsNotSaid) {
+  Diagnosis d = of(SyntheticWorld::point(0.5, -0.6), 1);
+  ASSERT_EQ(d.verdict.kind, Kind::calibration);
+  const auto calibration = std::find_if(d.judgements.begin(), d.judgements.end(), [](const Judgement& j) {
+    return j.hypothesis.effects.empty() && !j.hypothesis.unknown;
+  });
+  refute(d, static_cast<std::size_t>(calibration - d.judgements.begin()), Gap{90, 11, 1e-9});
+  EXPECT_NE(d.verdict.kind, Kind::calibration);
+  EXPECT_TRUE(d.calibration.refuted);
+  EXPECT_EQ(d.calibration.gap.chi2, 90);
+  EXPECT_EQ(d.calibration.probability, 0);
+}
+
+// Pairs are tried where the one effect that explains the data is contradicted, and only there.
+TEST_F(DiagnosisOf, PairsAreTriedWhereSimulationsContradictSingleEffects) {
+  const Measurements measured = world.measure(SyntheticWorld::point(0.1, 0.1, {{1, 0.6}}), 5, 3);
+  const auto pairs = [&](const Contradicted& contradicted) {
+    const Diagnosis d = diagnose(world.space, measured, model, contradicted);
+    return std::count_if(d.judgements.begin(), d.judgements.end(),
+                         [](const Judgement& j) { return j.hypothesis.effects.size() == 2; });
+  };
+  EXPECT_EQ(pairs({}), 0);
+  EXPECT_EQ(pairs({{0}}), 0);
+  EXPECT_EQ(pairs({{1}}), 6) << "of four effects";
+}
+
+// One number whose repeats scatter thirtyfold widens itself, and the others of its experiment hardly.
+TEST_F(DiagnosisOf, OneNumberThatScattersWidensTheOthersLittle) {
+  Measurements measured = world.measure({world.space.nominal(), {}}, 5, 7);
+  const Eigen::VectorXd before = working_covariance(measured, model.surfaces()).matrix.diagonal().cwiseSqrt();
+  MeasuredValue& odd = measured.values[2];
+  odd.std = 30 * *odd.std;
+  odd.uncertainty = *odd.std / std::sqrt(5.0);
+  measured.covariance(2, 2) = odd.uncertainty * odd.uncertainty;
+  const Eigen::VectorXd after = working_covariance(measured, model.surfaces()).matrix.diagonal().cwiseSqrt();
+  EXPECT_GT(after[2], 5 * before[2]);
+  for (const Eigen::Index k : {0, 1, 3, 4, 5}) EXPECT_LT(after[k], 1.9 * before[k]) << k;
+  for (Eigen::Index k = 6; k < 11; ++k) EXPECT_EQ(after[k], before[k]) << k << ", of another experiment";
+}
+
 // What could not be simulated is not named either; its gap stays that of the surface.
 TEST_F(DiagnosisOf, WhatCannotBeSimulatedIsNotNamed) {
   Diagnosis d = of(SyntheticWorld::point(0.1, 0.1, {{1, 0.6}}), 3);
@@ -223,6 +265,25 @@ TEST(Evidence, FindsBothOfTwoModes) {
   EXPECT_NEAR(e.log_evidence, std::log(2 * 0.05 * std::sqrt(2 * std::numbers::pi) / 2), 0.1);
   EXPECT_LT(e.quantile(0, 0.25), -0.6);
   EXPECT_GT(e.quantile(0, 0.75), 0.6);
+}
+
+// A narrow peak beside a broad hill, which the stages find late: its interval is that of the peak, of many
+// samples and not of one. The peak is Student's t of two degrees of freedom in three dimensions.
+TEST(Evidence, HasEnoughSamplesOfANarrowPeak) {
+  constexpr double s = 0.01, height = 15;
+  const auto peak = [](const Eigen::VectorXd& x) {
+    const double hill = -0.5 * x.squaredNorm() / (0.3 * 0.3);
+    const double off = (x - Eigen::VectorXd::Constant(3, 0.45)).squaredNorm() / (s * s);
+    return std::log(std::exp(hill) + std::exp(height - 2.5 * std::log1p(off / 3)));
+  };
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const Evidence e =
+        integrate(peak, {Eigen::VectorXd::Constant(3, -1), Eigen::VectorXd::Constant(3, 1)}, seed);
+    EXPECT_GT(1 / e.weights.squaredNorm(), 90) << "samples that count, seed " << seed;
+    const double width = e.quantile(0, 0.95) - e.quantile(0, 0.05);
+    EXPECT_GT(width, 2 * s);
+    EXPECT_LT(width, 12 * s);
+  }
 }
 
 TEST(ResponseSurface, LearnsScatterAndForetellsWithinItsUncertainty) {
