@@ -39,12 +39,13 @@ Eigen::VectorXd coordinates(const std::vector<double>& unit, std::size_t first, 
   return x;
 }
 
-// Amplitudes spread evenly over the range, none of them 0.
+// Amplitudes spread over the range, none of them 0. Of effects of one sign the square roots are even: several
+// do most of what they can in the lowest part of their range.
 double amplitude(const CandidateEffect& effect, int k, int count) {
   const double low = effect.lowest(), high = effect.highest();
-  const double share = static_cast<double>(k) / (count - 1);
-  if (low >= 0) return high * (k + 1) / count;
-  if (high <= 0) return low * (k + 1) / count;
+  const double share = static_cast<double>(k) / (count - 1), root = static_cast<double>(k + 1) / count;
+  if (low >= 0) return high * root * root;
+  if (high <= 0) return low * root * root;
   const double here = low + share * (high - low);
   return std::abs(here) > 1e-6 ? here : 0.5 * high / count;
 }
