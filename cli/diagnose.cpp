@@ -14,6 +14,7 @@
 #include "cli/run_through.h"
 #include "sim/io/text_file.h"
 #include "sim/material/input_bytes.h"
+#include "sim/scene/estimate.h"
 #include "sim/scene/scenario_values.h"
 
 namespace fs = std::filesystem;
@@ -45,7 +46,11 @@ void print_plan(const scree::DiagnosisSession& session, const scree::ResultsStor
     const std::size_t here = piles.size() - to_come.size();
     fmt::print("{:<20} {:>5} simulations, {} in the store", session.data().experiments[e].name, piles.size(),
                here);
-    if (timed > 0) fmt::print(", {} each", scree::spell_duration(seconds / static_cast<double>(timed)));
+    if (timed > 0)
+      fmt::print(", {} each", scree::spell_duration(seconds / static_cast<double>(timed)));
+    else
+      fmt::print(", about {:.0f} spheres each",
+                 scree::estimated_spheres(session.data().experiments[e].scenario));
     if (readings > 0) fmt::print("; {} more readings of their piles", readings);
     fmt::print("\n");
     all += piles.size();

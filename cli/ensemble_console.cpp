@@ -58,9 +58,8 @@ scree::EnsembleProgress run_with_progress(const std::vector<scree::RunRequest>& 
     if (p.failed > 0) text += fmt::format(" ({} failed)", p.failed);
     text += fmt::format(", {} under way", p.here);
     if (p.others > 0) text += fmt::format(", {} by others", p.others);
-    const double work = static_cast<double>(p.ended_here) + p.share_under_way;
-    if (work > 0.05 && left > 0)
-      text += fmt::format(", about {} left", scree::spell_duration(elapsed * left / work));
+    if (p.work_here > 0.05 && left > 0)
+      text += fmt::format(", about {} left", scree::spell_duration(elapsed * left / p.work_here));
     fmt::print(stderr, "{}{}{}", terminal ? "\r\033[K" : "", text, terminal ? "" : "\n");
     std::fflush(stderr);
     line_open = terminal;

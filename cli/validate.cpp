@@ -53,7 +53,6 @@ int run_validate(const std::filesystem::path& file, const std::vector<std::strin
   const scree::Scenario& scenario = result.scenario;
   const scree::Grading grading = scree::effective_model(scenario).grading;
   const double mass = scree::total_mass(scenario);
-  const bool one_rock = std::holds_alternative<scree::DropTest>(scenario.experiment);
   std::string seeds;
   for (const auto seed : scenario.seeds) seeds += (seeds.empty() ? "" : ", ") + std::to_string(seed);
   std::string effects;
@@ -62,7 +61,6 @@ int run_validate(const std::filesystem::path& file, const std::vector<std::strin
   fmt::print("{}: ok: {}, engine {}, grading {}, {:g} t, about {:.0f} spheres, seeds {}{}\n", file.string(),
              scree::experiment_type(scenario),
              scenario.engine == scree::EngineKind::rrlinear ? "rrlinear" : "impulse", grading.name(),
-             mass / 1000, one_rock ? 1.0 : scree::estimated_spheres(grading, mass, scenario.material.density),
-             seeds, effects);
+             mass / 1000, scree::estimated_spheres(scenario), seeds, effects);
   return 0;
 }

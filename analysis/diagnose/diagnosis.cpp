@@ -229,7 +229,7 @@ void sort_by_probability(std::vector<Judgement>& judgements) {
 }
 
 bool explains(const Judgement& j) {
-  return !j.refuted && !j.untried && j.gap.p > kFitsAbove;
+  return j.simulated == Judgement::Simulated::open && j.gap.p > kFitsAbove;
 }
 
 bool holds(const Hypothesis& larger, const Hypothesis& smaller) {
@@ -250,7 +250,7 @@ DiagnosisVerdict verdict_of(const Diagnosis& d) {
   }
   // What re-calibration leaves may still be chance: anything else must be much more probable.
   const double leading = std::max(unknown, first < all.size() ? all[first].probability : 0);
-  if (!d.calibration.refuted && d.calibration.probability * kApartBy > leading)
+  if (d.calibration.simulated == Judgement::Simulated::open && d.calibration.probability * kApartBy > leading)
     return {Kind::calibration, {}};
   if (first == all.size() || unknown > all[first].probability) return {Kind::unknown, {}};
   DiagnosisVerdict verdict{Kind::effect, {first}};
@@ -382,7 +382,7 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
 void refute(Diagnosis& d, std::size_t judgement, const std::optional<Gap>& gap) {
   Judgement& refuted = d.judgements[judgement];
   if (gap) refuted.gap = *gap;
-  (gap ? refuted.refuted : refuted.untried) = true;
+  refuted.simulated = gap ? Judgement::Simulated::refuted : Judgement::Simulated::failed;
   refuted.probability = 0;
   double rest = 0;  // summed: one minus what is nearly one has lost its digits
   for (const Judgement& j : d.judgements) rest += j.probability;

@@ -52,8 +52,9 @@ struct Judgement {
   double probability = 0;  ///< of this hypothesis among all
   ModelPoint best;         ///< most likely
   Gap gap;                 ///< there
-  bool refuted = false;    ///< full simulations there do not give the data; the gap is theirs
-  bool untried = false;    ///< full simulations there fail or give no measurement: not named
+  /// What full simulations there say: `refuted` if they do not give the data (the gap is theirs then),
+  /// `failed` if they fail or give no measurement. Neither is named.
+  enum class Simulated { open, refuted, failed } simulated = Simulated::open;
   struct Interval {
     double low, middle, high;
   };

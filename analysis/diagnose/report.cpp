@@ -35,8 +35,8 @@ Json json_of(const ModelSpace& space, const Judgement& j) {
   json["log_evidence"] = j.evidence.log_evidence;
   json["prior"] = j.hypothesis.prior;
   json["gap"] = json_of(j.gap);
-  json["refuted"] = j.refuted;
-  json["could_not_be_simulated"] = j.untried;
+  json["refuted"] = j.simulated == Judgement::Simulated::refuted;
+  json["could_not_be_simulated"] = j.simulated == Judgement::Simulated::failed;
   json["signature"] = j.signature;
   for (std::size_t k = 0; k < space.base.size(); ++k)
     json["parameters"][space.base[k].key] = json_of(j.base[k]);
@@ -183,9 +183,9 @@ std::string candidates_table(const DiagnosisOutcome& o) {
         "<tr><td class=\"word\">{}</td><td>{}</td><td>{} on {}</td><td>{}</td><td "
         "class=\"word\">{}</td></tr>\n",
         html_escaped(name_of(o.space, j.hypothesis)),
-        j.refuted   ? "refuted by full simulations"
-        : j.untried ? "could not be simulated"
-                    : decimals_text(j.probability, 3),
+        j.simulated == Judgement::Simulated::refuted  ? "refuted by full simulations"
+        : j.simulated == Judgement::Simulated::failed ? "could not be simulated"
+                                                      : decimals_text(j.probability, 3),
         number_text(j.gap.chi2), j.gap.freedom, p_text(j.gap.p), html_escaped(values.empty() ? "–" : values));
   }
   return fmt::format(

@@ -114,11 +114,12 @@ std::vector<PlannedRun> design_of(const ModelSpace& space, const SimulationCount
     const std::size_t others = effect.axes.size() - 1;
     const std::uint64_t own = hash_of(effect.name);
     if (effect.measures) {
-      for (std::size_t k = 0;
-           const auto& unit : latin_hypercube(counts.base, static_cast<int>(1 + others), own)) {
-        const PlannedRun& plain = runs[static_cast<std::size_t>(counts.nominal) + k++];
+      const auto points = latin_hypercube(counts.effect, static_cast<int>(1 + others), own);
+      for (int k = 0; k < counts.effect; ++k) {
+        const PlannedRun& plain = runs[static_cast<std::size_t>(counts.nominal + k % counts.base)];
+        const auto& unit = points[static_cast<std::size_t>(k)];
         Eigen::VectorXd at(static_cast<Eigen::Index>(1 + others));
-        at << amplitude(effect, static_cast<int>(unit[0] * counts.base), counts.base),
+        at << amplitude(effect, static_cast<int>(unit[0] * counts.effect), counts.effect),
             coordinates(unit, 1, others);
         runs.push_back({{plain.at.base, {{e, at}}}, plain.seed});
       }

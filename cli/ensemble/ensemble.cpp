@@ -6,7 +6,6 @@
 #include <chrono>
 #include <fstream>
 #include <map>
-#include <numeric>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -78,8 +77,12 @@ class Ensemble {
       }
       progress_.here = under_way_.size();
       progress_.others = left_to_others_.size();
-      const std::vector<double> shares = executor_.shares();
-      progress_.share_under_way = std::accumulate(shares.begin(), shares.end(), 0.0);
+      progress_.share_under_way = 0;
+      progress_.work_here = ended_work_;
+      for (const ShareDone& share : executor_.shares()) {
+        progress_.share_under_way += share.now;
+        progress_.work_here += share.now - share.before;
+      }
       if (!report(progress_)) return progress_;
       if (idle()) return progress_;
     }
@@ -243,6 +246,7 @@ class Ensemble {
     if (!ours) return;  // it was taken for dead, and another program does the run now
     if (!may_go_on) forget_folder(ended.key);
     ++progress_.ended_here;
+    ended_work_ += 1 - ended.share_before;
     failure.empty() ? ++progress_.done : ++progress_.failed;
   }
 
@@ -254,7 +258,7 @@ class Ensemble {
   std::map<std::string, int> interrupted_;           // how often, by key
   std::set<std::string> tried_, refused_, reading_;  // keys
   std::set<std::string> piles_;                      // that are there
-  double looked_ = 0;
+  double looked_ = 0, ended_work_ = 0;
   EnsembleProgress progress_;
 };
 

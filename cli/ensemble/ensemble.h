@@ -26,6 +26,7 @@ struct EnsembleProgress {
   std::size_t begun_anew = 0;  ///< whose checkpoint was refused
   std::string why_anew;        ///< the last of them
   double share_under_way = 0;  ///< sum of the shares done of the runs under way in this program
+  double work_here = 0;        ///< runs' worth of work that this program has done
 };
 
 /// Brings every run into the store: does those that are not there, leaves those that others do to them (and

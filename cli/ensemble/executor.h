@@ -28,7 +28,14 @@ struct EndedJob {
   JobEnd end = JobEnd::bad;
   std::string message;  ///< the last words of one that ended badly
   double wall_seconds = 0;
-  bool resumed = false;  ///< Job::resume
+  bool resumed = false;     ///< Job::resume
+  double share_before = 0;  ///< that was done before it was resumed
+};
+
+/// How far a run under way is, from 0 to 1.
+struct ShareDone {
+  double now = 0;
+  double before = 0;  ///< when it was resumed
 };
 
 class Executor {
@@ -39,8 +46,8 @@ class Executor {
   virtual void start(const Job& job) = 0;
   /// A run that has ended since the last call; none when nothing has, after at most `patience` seconds.
   virtual std::optional<EndedJob> wait(double patience) = 0;
-  /// Share done (0 to 1) of each run under way.
-  virtual std::vector<double> shares() const = 0;
+  /// Of each run under way.
+  virtual std::vector<ShareDone> shares() const = 0;
   /// Ends all runs under way, which leave a checkpoint if they make any and can within half a minute, and
   /// forgets them.
   virtual void cancel() = 0;
@@ -57,7 +64,7 @@ class LocalProcesses final : public Executor {
   int free_places() const override;
   void start(const Job& job) override;
   std::optional<EndedJob> wait(double patience) override;
-  std::vector<double> shares() const override;
+  std::vector<ShareDone> shares() const override;
   void cancel() override;
 
  private:

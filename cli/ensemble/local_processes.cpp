@@ -43,9 +43,16 @@ std::optional<double> share_of(const std::string& line) {
   return std::nullopt;
 }
 
-double share_in(const std::filesystem::path& log) {
-  double share = 0;
-  for (const std::string& line : lines_of(log)) share = share_of(line).value_or(share);
+// The first and the last share that a log tells; 0 without one.
+ShareDone share_in(const std::filesystem::path& log, bool resumed) {
+  std::optional<double> first;
+  ShareDone share;
+  for (const std::string& line : lines_of(log))
+    if (const auto here = share_of(line)) {
+      if (!first) first = *here;
+      share.now = *here;
+    }
+  if (resumed) share.before = first.value_or(0);
   return share;
 }
 
@@ -122,7 +129,8 @@ std::optional<EndedJob> LocalProcesses::wait(double patience) {
                                             : JobEnd::bad,
                      {},
                      now() - process->started,
-                     process->job.resume};
+                     process->job.resume,
+                     share_in(process->job.folder / "log.txt", process->job.resume).before};
       if (ended.end == JobEnd::bad || ended.end == JobEnd::refused) {
         const std::string words = words_in(process->job.folder / "log.txt");
         ended.message = WIFSIGNALED(status) ? fmt::format("killed by signal {}", WTERMSIG(status))
@@ -137,9 +145,10 @@ std::optional<EndedJob> LocalProcesses::wait(double patience) {
   }
 }
 
-std::vector<double> LocalProcesses::shares() const {
-  std::vector<double> shares;
-  for (const Process& process : processes_) shares.push_back(share_in(process.job.folder / "log.txt"));
+std::vector<ShareDone> LocalProcesses::shares() const {
+  std::vector<ShareDone> shares;
+  for (const Process& process : processes_)
+    shares.push_back(share_in(process.job.folder / "log.txt", process.job.resume));
   return shares;
 }
 

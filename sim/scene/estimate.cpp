@@ -26,4 +26,10 @@ double estimated_spheres(const Grading& grading, double mass, double density) {
   return per_volume * mass / density;
 }
 
+double estimated_spheres(const Scenario& scenario) {
+  if (std::holds_alternative<DropTest>(scenario.experiment)) return 1;
+  return estimated_spheres(effective_model(scenario).grading, total_mass(scenario),
+                           scenario.material.density);
+}
+
 }  // namespace scree

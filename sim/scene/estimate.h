@@ -15,5 +15,7 @@ double total_mass(const Scenario& scenario);
 /// passing curve P, which between two points is linear in log d, so that there the mean of d^-3 is (d1^-3 -
 /// d2^-3) / (3 ln(d2/d1)).
 double estimated_spheres(const Grading& grading, double mass, double density);
+/// The same of all loads of a scenario.
+double estimated_spheres(const Scenario& scenario);
 
 }  // namespace scree

@@ -118,7 +118,7 @@ TEST_F(DiagnosisOf, WhatSimulationsContradictIsNotNamed) {
   for (const Judgement& j : d.judgements) {
     EXPECT_LE(j.probability, before) << "by falling probability";
     sum += before = j.probability;
-    if (j.refuted) {
+    if (j.simulated == Judgement::Simulated::refuted) {
       EXPECT_EQ(j.probability, 0);
       EXPECT_EQ(j.gap.chi2, 90);
     }
@@ -136,7 +136,7 @@ TEST_F(DiagnosisOf, ACalibrationThatSimulationsContradictIsNotSaid) {
   });
   refute(d, static_cast<std::size_t>(calibration - d.judgements.begin()), Gap{90, 11, 1e-9});
   EXPECT_NE(d.verdict.kind, Kind::calibration);
-  EXPECT_TRUE(d.calibration.refuted);
+  EXPECT_EQ(d.calibration.simulated, Judgement::Simulated::refuted);
   EXPECT_EQ(d.calibration.gap.chi2, 90);
   EXPECT_EQ(d.calibration.probability, 0);
 }
@@ -174,11 +174,11 @@ TEST_F(DiagnosisOf, WhatCannotBeSimulatedIsNotNamed) {
   const double chi2 = d.judgements[d.verdict.named.front()].gap.chi2;
   refute(d, d.verdict.named.front(), std::nullopt);
   EXPECT_NE(named(d), std::vector<std::size_t>{1});
-  const auto untried =
-      std::find_if(d.judgements.begin(), d.judgements.end(), [](const Judgement& j) { return j.untried; });
-  ASSERT_NE(untried, d.judgements.end());
-  EXPECT_FALSE(untried->refuted);
-  EXPECT_EQ(untried->gap.chi2, chi2);
+  const auto failed = std::find_if(d.judgements.begin(), d.judgements.end(), [](const Judgement& j) {
+    return j.simulated == Judgement::Simulated::failed;
+  });
+  ASSERT_NE(failed, d.judgements.end());
+  EXPECT_EQ(failed->gap.chi2, chi2);
 }
 
 // Re-calibration three times as probable as the one effect that explains the data: no name, however probable

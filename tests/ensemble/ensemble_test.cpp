@@ -120,6 +120,35 @@ TEST_F(Runs, InterruptedOnesAreGivenBackAndEnd) {
   EXPECT_FALSE(fs::exists(folder / "store.sqlite.work"));
 }
 
+// What a resumed run had done before is not counted as done in the time that this program has worked.
+TEST_F(Runs, TheTimeLeftCountsWhatIsDoneHere) {
+  ResultsStore store(folder / "store.sqlite");
+  requests.resize(1);
+  const fs::path kept = folder / "store.sqlite.work" / "key0" / "run" / "seed_1";
+  fs::create_directories(kept);
+  std::ofstream(kept / "checkpoint_1") << "state";
+  const fs::path file = folder / "resumed.sh";
+  std::ofstream(file)
+      << "#!/bin/sh\necho ' 80 %  about 9 s left'; sleep 0.5; echo ' 90 %  about 3 s left'; sleep "
+         "0.5\ncat > $3/summary.json <<END\n"
+         R"({"title": "made up", "comparison": [], "per_seed": [
+  {"seed": 1, "wall_seconds": 500, "outputs": {"particles": 10, "at_rest": 1}}]}
+END
+)";
+  fs::permissions(file, fs::perms::owner_all);
+  LocalProcesses processes(1, 5, file);
+  double most = 0, share = 0;
+  const EnsembleProgress end =
+      run_ensemble(requests, store, processes, {"1", false}, [&](const EnsembleProgress& p) {
+        if (p.here == 1) most = std::max(most, p.work_here);
+        share = std::max(share, p.share_under_way);
+        return true;
+      });
+  EXPECT_NEAR(share, 0.9, 1e-9);
+  EXPECT_NEAR(most, 0.1, 1e-9);
+  EXPECT_NEAR(end.work_here, 0.2, 1e-9);
+}
+
 // Readings of one pile: one of them simulates and keeps its pile, the others read it, and it is gone at last.
 // Those of a pile that no other run shares keep none.
 TEST_F(Runs, ReadingsOfOnePileAreOneSimulation) {
