@@ -12,6 +12,7 @@
 #include "sim/contact/contact_effects.h"
 #include "sim/effects/measurement.h"
 #include "sim/world/breakage.h"
+#include "sim/world/clumps.h"
 #include "sim/world/vibration.h"
 
 namespace scree {
@@ -29,6 +30,7 @@ struct Modifications {
   double release_speed = 0;               ///< m/s, along the bed, of a load when its gate opens
   Vibration vibration;                    ///< of the ground
   Breakage breakage;
+  Clumps clumps;
   Measurement measurement;  ///< how the finished pile is measured
 };
 

@@ -17,6 +17,7 @@ Effect density_by_size();
 Effect missing_fines();
 Effect release_speed();
 Effect breakage();
+Effect clumps();
 Effect vibration();
 Effect detection_limit();
 Effect image_blur();

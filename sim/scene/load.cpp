@@ -49,19 +49,62 @@ bool fill(Load& load, const LoadRegion& region, const std::vector<double>& diame
   return true;
 }
 
+// The same of clumps, whose spheres must be free, both.
+bool fill_with_clumps(Load& load, const LoadRegion& region, const std::vector<double>& diameters,
+                      Random random, const Clumps& clumps) {
+  const bool cylinder = region.length.y() == 0;
+  const double size = 0.5 * clumps.size();
+  NeighbourGrid grid;
+  grid.reset(2 * static_cast<int>(diameters.size()), size * diameters.back(), size * diameters.front());
+  for (int i = 0; i < static_cast<int>(diameters.size()); ++i) {
+    const double r = size * diameters[i], arm = clumps.arm() * r;
+    bool free = false;
+    for (int tries = 0; tries < kTries && !free; ++tries) {
+      const double up = random.uniform(-1, 1), around = 2.0 * std::numbers::pi * random.uniform(),
+                   flat = std::sqrt(std::max(0.0, 1 - up * up));
+      const Vec3 axis(flat * std::cos(around), flat * std::sin(around), up);
+      const Vec3 reach = Vec3::Constant(r) + arm * axis.cwiseAbs();
+      Vec3 x;
+      if (cylinder) {
+        const double rho = (0.5 * region.length.x() - r - arm * flat) * std::sqrt(random.uniform());
+        const double angle = 2.0 * std::numbers::pi * random.uniform();
+        x = {rho * std::cos(angle), rho * std::sin(angle), 0};
+      } else {
+        x = {random.uniform(-region.length.x() + reach.x(), -reach.x()),
+             random.uniform(-0.5 * region.length.y() + reach.y(), 0.5 * region.length.y() - reach.y()), 0};
+      }
+      x.z() = random.uniform(reach.z(), load.height - reach.z());
+      grid.place(2 * i, x - arm * axis, r);
+      grid.place(2 * i + 1, x + arm * axis, r);
+      free = true;
+      for (const int own : {2 * i, 2 * i + 1})
+        grid.query(own, [&](int j) {
+          const double apart = r + grid.site(j).w;
+          if (j / 2 != i && (grid.site(own).vec() - grid.site(j).vec()).squaredNorm() < apart * apart)
+            free = false;
+        });
+      if (!free) continue;
+      load.positions.push_back(x);
+      load.axes.push_back(axis);
+    }
+    if (!free) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 Load fill_region(const LoadRegion& region, const std::vector<double>& diameters, std::uint64_t seed,
-                 std::uint64_t dump) {
+                 std::uint64_t dump, const Clumps& clumps) {
   Load load;
   load.height = region.length.z();
   if (diameters.empty()) return load;
-  const double largest = diameters.front();
+  const double largest = diameters.front() * (clumps.on() ? clumps.length() : 1.0);
   const double width =
       region.length.y() == 0 ? region.length.x() : std::min(region.length.x(), region.length.y());
   if (largest > width)
     throw std::invalid_argument(
-        fmt::format("a sphere of {:.3f} m does not fit into a container {:.3f} m wide", largest, width));
+        fmt::format("a grain of {:.3f} m does not fit into a container {:.3f} m wide", largest, width));
   double solid = 0;
   for (const double d : diameters) solid += std::numbers::pi / 6 * d * d * d;
   const double area = region.length.y() == 0 ? 0.25 * std::numbers::pi * width * width
@@ -70,8 +113,14 @@ Load fill_region(const LoadRegion& region, const std::vector<double>& diameters,
 
   // A region that is too small grows, and is filled anew from the start: were only the rest put into what was
   // added, the fines, which are placed last, would lie on top.
-  for (; !fill(load, region, diameters, Random(seed, dump, RandomPurpose::positions)); load.height *= kGrowth)
+  const auto filled = [&] {
     load.positions.clear();
+    load.axes.clear();
+    const Random random(seed, dump, RandomPurpose::positions);
+    return clumps.on() ? fill_with_clumps(load, region, diameters, random, clumps)
+                       : fill(load, region, diameters, random);
+  };
+  while (!filled()) load.height *= kGrowth;
   return load;
 }
 

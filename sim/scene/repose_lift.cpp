@@ -11,10 +11,11 @@ namespace scree {
 RunOutcome run_repose_lift(const Scenario& scenario, const ReposeLift& e, std::uint64_t seed, int threads,
                            const RunHooks& hooks) {
   const double r = e.floor_radius;
+  const EffectiveModel model = effective_model(scenario);
   const std::vector<double> diameters =
-      generate_diameters(effective_model(scenario).grading, e.mass, scenario.material.density, seed, 1);
+      generate_diameters(model.grading, e.mass, scenario.material.density, seed, 1);
   const double floor = ball_radius(e.base_layer);  // the container stands on the balls
-  const Load load = fill_region({{e.diameter, 0, e.height}}, diameters, seed, 1);
+  const Load load = fill_region({{e.diameter, 0, e.height}}, diameters, seed, 1, model.changes.clumps);
   const double lift = e.height + 2.0 * diameters.front();
   Stage stage(scenario, seed, threads, hooks, {-r, -r, -0.5 * e.height},
               {r, r, floor + 4.0 * std::max(load.height, lift)});
@@ -22,7 +23,10 @@ RunOutcome run_repose_lift(const Scenario& scenario, const ReposeLift& e, std::u
 
   std::vector<NewSphere> spheres;
   for (std::size_t k = 0; k < diameters.size(); ++k)
-    spheres.push_back({load.positions[k] + Vec3(0, 0, floor), diameters[k], 1});
+    spheres.push_back({.position = load.positions[k] + Vec3(0, 0, floor),
+                       .diameter = diameters[k],
+                       .dump = 1,
+                       .axis = load.axes.empty() ? Vec3::Zero() : load.axes[k]});
   stage.begin(make_floor_layer(r, e.base_layer, seed), {spheres});
   world.add_mesh(make_box({-r, -r, -0.2 * r}, {r, r, 0}), stage.ground_surface(e.floor_mu, e.floor_mu_r),
                  Motion());

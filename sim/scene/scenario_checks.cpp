@@ -109,6 +109,9 @@ class Checks {
     if (moves != s_.effects.end() && s_.engine == EngineKind::impulse)
       fail(&moves->values.front(),
            "effects: engine impulse has none but those on measurement; take engine rrlinear");
+    if (const Modifications changes = modifications(s_.effects, {});
+        changes.clumps.on() && changes.breakage.on())
+      fail(&s_.effects.front().values.front(), "effects: clumps do not break; take clumps or breakage");
     for (const EffectUse& use : s_.effects) {
       const auto& acts_in = use.effect->experiments;
       if (!acts_in.empty() && std::find(acts_in.begin(), acts_in.end(), experiment_type(s_)) == acts_in.end())

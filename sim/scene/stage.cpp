@@ -27,6 +27,7 @@ Stage::Stage(const Scenario& scenario, std::uint64_t seed, int threads, const Ru
   settings.flight_damping = model_.changes.flight_damping;
   settings.vibration = model_.changes.vibration;
   settings.breakage = model_.changes.breakage;
+  if (!std::holds_alternative<DropTest>(scenario.experiment)) settings.clumps = model_.changes.clumps;
   if (scenario.engine == EngineKind::impulse) {
     settings.material.mu = scenario.bullet.value().friction;
     settings.material.mu_r = scenario.bullet.value().rolling;

@@ -48,6 +48,7 @@ bool PairList::leaves_soon(int i, const Spheres& s, double horizon) const {
 
 void PairList::rebuild(const Spheres& s, const std::vector<int>& order, double horizon) {
   const int n = s.size();
+  partner_ = s.partner.empty() ? nullptr : s.partner.data();
   const Rows<Neighbour> old_rows = std::move(rows_);
   const std::vector<std::int32_t> old_below = std::move(below_);
   const std::vector<ContactMemory> old_memory = std::move(memory_);
@@ -116,6 +117,7 @@ void PairList::rebuild(const Spheres& s, const std::vector<int>& order, double h
 }
 
 const std::vector<int>& PairList::repair(const Spheres& s, std::span<const int> near_rim, double horizon) {
+  partner_ = s.partner.empty() ? nullptr : s.partner.data();
   listed_.clear();
   balls_.clear();
   std::sort(dropped_.begin(), dropped_.end());
@@ -141,7 +143,8 @@ void PairList::find_neighbours(int i, std::vector<int>& found) const {
   grid_.query(i, [&](int j) {
     const Quad& other = grid_.site(j);
     const double dx = at.x - other.x, dy = at.y - other.y, dz = at.z - other.z, range = at.w + other.w;
-    if (dx * dx + dy * dy + dz * dz < range * range) found.push_back(j);
+    if (dx * dx + dy * dy + dz * dz < range * range && (partner_ == nullptr || partner_[i] != j))
+      found.push_back(j);
   });
   std::sort(found.begin() + static_cast<std::ptrdiff_t>(first), found.end());
 }

@@ -129,6 +129,7 @@ class PairList {
   std::vector<int> listed_, dropped_;
   std::int64_t listings_ = 0;
   Team* team_ = nullptr;
+  const std::int32_t* partner_ = nullptr;  // of the spheres in hand: those of one clump are no pair
 
   // What a search found, part by part: neighbours of the spheres of a part, one list after another.
   struct Part {

@@ -44,17 +44,47 @@ void RockWorld::add_sphere(const NewSphere& s, double mass, std::int64_t id) {
   spheres_.lost.push_back(0);
   spheres_.asleep.push_back(0);
   fixed_.push_back(s.fixed ? 1 : 0);
+  if (!settings_.clumps.on()) return;
+  spheres_.partner.push_back(-1);
+  spheres_.angular.push_back({0, 0, 0, 0});
+}
+
+void RockWorld::add_clump(const NewSphere& grain, double mass, std::int64_t id) {
+  const ClumpSpheres two = spheres_of_clump(settings_.clumps, grain, mass);
+  const int first = spheres_.size();
+  for (int k = 0; k < 2; ++k) {
+    NewSphere one = grain;
+    one.position = two.place[k];
+    one.velocity = two.velocity[k];
+    one.diameter = two.diameter;
+    if (k > 0) {
+      next_fragment_ = std::max({next_fragment_, next_, reserved_});
+      id = next_fragment_++;
+    }
+    add_sphere(one, 0.5 * mass, id);
+    spheres_.partner.back() = k == 0 ? first + 1 : first;
+    spheres_.angular.back().set(two.angular_momentum);
+  }
 }
 
 void RockWorld::add_spheres(const std::vector<NewSphere>& spheres) {
+  if (settings_.clumps.on())  // grains are numbered in order, their second spheres after them
+    reserved_ = std::max(reserved_, next_ + static_cast<std::int64_t>(spheres.size()));
   for (const NewSphere& s : spheres) {
     if (next_ >= reserved_) next_ = std::max(next_, next_fragment_);
-    add_sphere(s, sphere_mass(settings_.material, s.diameter), next_++);
+    const double mass = sphere_mass(settings_.material, s.diameter);
+    const int known = spheres_.size();
+    const std::int64_t id = next_++;
+    if (settings_.clumps.on() && !s.fixed)
+      add_clump(s, mass, id);
+    else
+      add_sphere(s, mass, id);
     if (s.fixed) continue;
-    const int i = spheres_.size() - 1;
-    account_.came_moving += kinetic_energy(i);
-    account_.came_potential += gravity_energy(i);
-    account_.weight_times_radius += spheres_.velocity[i].w * settings_.gravity.norm() * spheres_.place[i].w;
+    for (int i = known; i < spheres_.size(); ++i) {
+      account_.came_moving += kinetic_energy(i);
+      account_.came_potential += gravity_energy(i);
+      account_.weight_times_radius += spheres_.velocity[i].w * settings_.gravity.norm() * spheres_.place[i].w;
+    }
   }
   spheres_.movable = static_cast<int>(std::count(fixed_.begin(), fixed_.end(), 0));
   if (bullet_moves_spheres()) make_bodies();
@@ -153,6 +183,20 @@ void RockWorld::set_velocity(std::int64_t id, const Vec3& velocity, const Vec3& 
   const auto at = std::find(spheres_.id.begin(), spheres_.id.end(), id);
   if (at == spheres_.id.end()) throw std::out_of_range(fmt::format("no sphere has the number {}", id));
   const auto i = static_cast<int>(at - spheres_.id.begin());
+  const int other = spheres_.partner.empty() ? -1 : spheres_.partner[i];
+  if (other >= 0) {
+    const Vec3 arm = 0.5 * (spheres_.place[i].vec() - spheres_.place[other].vec());
+    const Vec3 angular = clump_angular_momentum(spin, arm.normalized(), 2 * spheres_.velocity[i].w,
+                                                spheres_.spin[i].w, arm.norm());
+    for (const int k : {i, other}) {
+      account_.set_moving -= kinetic_energy(k);
+      spheres_.velocity[k].set(velocity + spin.cross(k == i ? arm : Vec3(-arm)));
+      spheres_.spin[k].set(spin);
+      spheres_.angular[k].set(angular);
+      account_.set_moving += kinetic_energy(k);
+    }
+    return sphere_pushed(i);
+  }
   account_.set_moving -= kinetic_energy(i);
   spheres_.velocity[i].set(velocity);
   spheres_.spin[i].set(spin);
@@ -181,9 +225,16 @@ Snapshot RockWorld::snapshot() const {
   Snapshot shot;
   shot.time = time_;
   for (int i = 0; i < spheres_.size(); ++i) {
-    if (fixed_[i] || spheres_.lost[i]) continue;
-    shot.grains.push_back({spheres_.id[i], spheres_.place[i].vec(), spheres_.velocity[i].vec(),
-                           2.0 * spheres_.place[i].w, spheres_.velocity[i].w, spheres_.dump[i]});
+    if (fixed_[i] || spheres_.lost[i] || !spheres_.leads(i)) continue;
+    const int other = spheres_.partner.empty() ? -1 : spheres_.partner[i];
+    if (other < 0)
+      shot.grains.push_back({spheres_.id[i], spheres_.place[i].vec(), spheres_.velocity[i].vec(),
+                             2.0 * spheres_.place[i].w, spheres_.velocity[i].w, spheres_.dump[i]});
+    else
+      shot.grains.push_back({spheres_.id[i], 0.5 * (spheres_.place[i].vec() + spheres_.place[other].vec()),
+                             0.5 * (spheres_.velocity[i].vec() + spheres_.velocity[other].vec()),
+                             2.0 * spheres_.place[i].w / settings_.clumps.size(),
+                             spheres_.velocity[i].w + spheres_.velocity[other].w, spheres_.dump[i]});
   }
   std::sort(shot.grains.begin(), shot.grains.end(),
             [](const Grain& a, const Grain& b) { return a.id < b.id; });
@@ -248,9 +299,15 @@ void RockWorld::check_spheres(std::span<const int> spheres) {
     if ((x.array() < settings_.domain_low.array()).any() || (x.array() > settings_.domain_high.array()).any())
       lost.push_back(i);
   }
+  if (!spheres_.partner.empty()) {  // a clump leaves as one
+    for (std::size_t k = 0, count = lost.size(); k < count; ++k)
+      if (const int other = spheres_.partner[lost[k]]; other >= 0) lost.push_back(other);
+    std::sort(lost.begin(), lost.end());
+    lost.erase(std::unique(lost.begin(), lost.end()), lost.end());
+  }
   for (const int i : lost) {
     spheres_.lost[i] = 1;
-    ++statistics_.lost_particles;
+    if (spheres_.leads(i)) ++statistics_.lost_particles;
     statistics_.lost_mass += spheres_.velocity[i].w;
     drop_body(spheres_.id[i]);
     account_.lost_potential += gravity_energy(i);

@@ -25,6 +25,7 @@
 #include "sim/io/state_stream.h"
 #include "sim/material/material.h"
 #include "sim/world/breakage.h"
+#include "sim/world/clumps.h"
 #include "sim/world/energy_balance.h"
 #include "sim/world/energy_watch.h"
 #include "sim/world/mesh_body.h"
@@ -40,6 +41,7 @@ struct WorldSettings {
   Vec3 gravity{0, 0, -9.81};       ///< m/s2
   Vibration vibration;             ///< of gravity (rrlinear)
   Breakage breakage;               ///< of spheres (rrlinear)
+  Clumps clumps;                   ///< grains of two spheres (rrlinear)
   Vec3 domain_low = Vec3::Constant(-1e6), domain_high = Vec3::Constant(1e6);  ///< m; a sphere outside is lost
   double time_step_safety = 0.8;   ///< share of the stable step (rrlinear)
   double fixed_time_step = 0;      ///< s; above 0 it is used instead (rrlinear; for tests)
@@ -87,14 +89,16 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   RockWorld(const RockWorld&) = delete;
   RockWorld& operator=(const RockWorld&) = delete;
 
-  /// Adds spheres; ids are given in order, from 0 on.
+  /// Adds spheres, or clumps of the same volumes in the place of those that are not fixed; ids of grains are
+  /// given in order, from 0 on.
   void add_spheres(const std::vector<NewSphere>& spheres);
-  /// Keeps the ids below `count` for add_spheres(); fragments get those from there on.
+  /// Keeps the ids below `count` for add_spheres(); fragments, and the second spheres of clumps, get those
+  /// from there on.
   void reserve_numbers(std::int64_t count) { reserved_ = count; }
   /// Adds a mesh; returns its index, which stays valid.
   int add_mesh(TriangleMesh mesh, const Surface& surface, Motion motion);
   const MeshBody& mesh(int index) const { return *meshes_[index]; }
-  /// Gives a sphere another velocity (m/s) and spin (rad/s), and wakes it.
+  /// Gives a sphere or clump another velocity (m/s) and spin (rad/s), and wakes it.
   void set_velocity(std::int64_t id, const Vec3& velocity, const Vec3& spin);
   /// Gives a mesh a new motion; it should start where the mesh is.
   void set_mesh_motion(int index, Motion motion);
@@ -119,7 +123,7 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   const WorldSettings& settings() const { return settings_; }
   const WorldStatistics& statistics() const { return statistics_; }
   const Spheres& spheres() const { return spheres_; }
-  /// Movable spheres that are still in the model, by id.
+  /// Grains that are still in the model, by id: movable spheres, and clumps as spheres of their volume.
   Snapshot snapshot() const;
   /// Fixed balls, by id.
   std::vector<Grain> fixed_balls() const;
@@ -172,7 +176,7 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
 
  private:
   void add_sphere(const NewSphere& sphere, double mass, std::int64_t id);
-
+  void add_clump(const NewSphere& grain, double mass, std::int64_t id);
   void drop_body(std::int64_t id);
 
   std::int64_t next_ = 0, reserved_ = 0, next_fragment_ = 0;  // ids

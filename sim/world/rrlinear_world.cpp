@@ -149,8 +149,12 @@ void RrlinearWorld::prepare() {
   }
   friction_.clear();
   if (!settings_.contact_effects.none()) {
-    for (int i = 0; i < spheres_.size(); ++i)
-      friction_.push_back(friction_factors(settings_.contact_effects, 2 * spheres_.place[i].w, i >= n));
+    for (int i = 0; i < spheres_.size(); ++i) {
+      const bool clump = !spheres_.partner.empty() && spheres_.partner[i] >= 0;
+      const double of_grain = clump ? settings_.clumps.size() : 1.0;
+      friction_.push_back(
+          friction_factors(settings_.contact_effects, 2 * spheres_.place[i].w / of_grain, i >= n));
+    }
   }
 
   pairs_.rebuild(spheres_, order, horizon());
@@ -162,6 +166,7 @@ void RrlinearWorld::prepare() {
   facets_.list_all(spheres_, pairs_, meshes_);
   find_watched();
   for (int i = 0; i < n; ++i) stay_awake[i] |= watched_[i];
+  spheres_.join(stay_awake);
   sleep_.renumber(order, spheres_, pairs_, stay_awake, time_, settings_.gravity.norm());
   blocks_due_ = true;
   dt_ = stable_step();
@@ -184,6 +189,7 @@ void RrlinearWorld::find_watched() {
   if (!sleep_.on()) return;
   for (const int i : facets_.near_tools(meshes_, time_)) watched_[i] = 1;
   for (const GrowingSphere& g : growing_) watched_[g.sphere] = 1;
+  spheres_.join(watched_);
 }
 
 void RrlinearWorld::repair() {
@@ -379,6 +385,7 @@ void RrlinearWorld::step(double dt) {
     leapfrog(view, work);
     if (settings_.vibration.on()) supply_of_vibration(work, dt);
   });
+  if (settings_.clumps.on()) for_blocks([&](BlockWork& work) { move_clumps(view, settings_.clumps, work); });
   disturbed_.clear();
   Vec3 momentum = Vec3::Zero();
   for (BlockWork& work : blocks_) {

@@ -85,16 +85,27 @@ void Sleep::look(Spheres& s, std::span<const ForceSum> sums, PairList& pairs,
   if (!on_ || time < window_end_) return;
   window_end_ = time + window_;
   const double g = gravity.norm();
+  const auto still = [&](int i) {
+    const double radius = s.place[i].w;
+    return !stay_awake[i] && (s.place[i].vec() - window_start_[i]).norm() < kQuietTravel * radius &&
+           s.velocity[i].vec().norm() * window_ < 2.0 * kQuietTravel * radius;
+  };
+  // A clump is quiet as a whole: its spheres hold each other.
+  std::vector<std::uint8_t> quiet_ones(awake_.size());
+  for (std::size_t a = 0; a < awake_.size(); ++a) {
+    const int i = awake_[a], other = s.partner.empty() ? -1 : s.partner[i];
+    Vec3 force = sums[i].force.vec();
+    double contacts = sums[i].force.w, mass = s.velocity[i].w;
+    if (other >= 0)
+      force += sums[other].force.vec(), contacts += sums[other].force.w, mass += s.velocity[other].w;
+    const double pull = (force + mass * gravity).norm();
+    quiet_ones[a] = contacts > 0 && pull < kQuietPull * (mass * g) && still(i) && (other < 0 || still(other));
+  }
   std::size_t kept = 0;
-  for (const int i : awake_) {
-    const Vec3 x = s.place[i].vec();
-    const double radius = s.place[i].w, weight = s.velocity[i].w * g;
-    const double travel = (x - window_start_[i]).norm();
-    window_start_[i] = x;
-    const double pull = (sums[i].force.vec() + s.velocity[i].w * gravity).norm();
-    const bool quiet = !stay_awake[i] && sums[i].force.w > 0 && travel < kQuietTravel * radius &&
-                       pull < kQuietPull * weight &&
-                       s.velocity[i].vec().norm() * window_ < 2.0 * kQuietTravel * radius;
+  for (std::size_t a = 0; a < awake_.size(); ++a) {
+    const int i = awake_[a];
+    const bool quiet = quiet_ones[a] != 0;
+    window_start_[i] = s.place[i].vec();
     quiet_windows_[i] = quiet ? static_cast<std::uint8_t>(quiet_windows_[i] + 1) : std::uint8_t{0};
     if (quiet_windows_[i] < kQuietWindows) {
       awake_[kept++] = i;
@@ -106,6 +117,7 @@ void Sleep::look(Spheres& s, std::span<const ForceSum> sums, PairList& pairs,
                      0.5 * s.spin[i].w * s.spin[i].vec().squaredNorm();
     s.velocity[i].set(Vec3::Zero());
     s.spin[i].set(Vec3::Zero());
+    if (!s.angular.empty()) s.angular[i].set(Vec3::Zero());
     forget_rest(i, s, pairs);
     fallen_asleep_.push_back(i);
     ++asleep_;
@@ -114,6 +126,9 @@ void Sleep::look(Spheres& s, std::span<const ForceSum> sums, PairList& pairs,
 }
 
 bool Sleep::wake(std::vector<int>& disturbed, Spheres& s, PairList& pairs) {
+  if (!s.partner.empty())  // a clump wakes as one
+    for (std::size_t k = 0, count = disturbed.size(); k < count; ++k)
+      if (const int other = s.partner[disturbed[k]]; other >= 0) disturbed.push_back(other);
   std::sort(disturbed.begin(), disturbed.end());
   disturbed.erase(std::unique(disturbed.begin(), disturbed.end()), disturbed.end());
   std::erase_if(disturbed, [&](int i) { return !s.asleep[i]; });

@@ -58,6 +58,14 @@ std::vector<int> sort_spheres(Spheres& s, const std::vector<std::uint8_t>& fixed
   permute(s.dump, order);
   permute(s.lost, order);
   permute(s.asleep, order);
+  if (!s.partner.empty()) {
+    permute(s.partner, order);
+    permute(s.angular, order);
+    std::vector<std::int32_t> now(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) now[order[k]] = static_cast<std::int32_t>(k);
+    for (std::int32_t& other : s.partner)
+      if (other >= 0) other = now[other];
+  }
   s.movable = static_cast<int>(std::count(fixed.begin(), fixed.end(), 0));
   return order;
 }

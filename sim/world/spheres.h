@@ -15,6 +15,7 @@ struct NewSphere {
   bool fixed = false;
   Vec3 velocity = Vec3::Zero();  ///< m/s
   Vec3 spin = Vec3::Zero();      ///< rad/s
+  Vec3 axis = Vec3::Zero();      ///< of a clump (clumps.h), a unit vector; zero: along x
 };
 
 /// Movable spheres stand first (index below `movable`), fixed balls behind them.
@@ -26,11 +27,25 @@ struct Spheres {
   std::vector<std::int32_t> dump;
   std::vector<std::uint8_t> lost;    ///< has left the model; takes no part any more
   std::vector<std::uint8_t> asleep;  ///< at rest and not moved until disturbed (rrlinear)
+  /// Where grains are clumps (clumps.h), else empty: the other sphere of a grain, or -1 for one alone; and
+  /// the grain's angular momentum about its middle (kg m2/s), which both have.
+  std::vector<std::int32_t> partner;
+  std::vector<Quad> angular;
   int movable = 0;
 
   int size() const { return static_cast<int>(place.size()); }
   /// Bytes held.
-  std::size_t bytes() const { return place.capacity() * (3 * sizeof(Quad) + 14); }
+  std::size_t bytes() const {
+    return place.capacity() * (3 * sizeof(Quad) + 14) +
+           angular.capacity() * (sizeof(Quad) + sizeof(std::int32_t));
+  }
+  /// The first sphere of a grain, or one that is a grain alone.
+  bool leads(int i) const { return partner.empty() || partner[i] < 0 || id[i] < id[partner[i]]; }
+  /// A flag of one sphere of a clump holds for the other, too.
+  void join(std::vector<std::uint8_t>& flags) const {
+    for (int i = 0; i < static_cast<int>(partner.size()) && i < static_cast<int>(flags.size()); ++i)
+      if (partner[i] > i) flags[i] = flags[partner[i]] = flags[i] | flags[partner[i]];
+  }
 };
 
 /// Orders movable spheres along a Morton curve (lost ones last), fixed balls likewise behind them. Returns

@@ -359,8 +359,10 @@ void contact_forces(const StepView& view, BlockWork& work) {
   }
 }
 
-SCREE_VECTORISED
-void leapfrog(const LeapfrogView& view, BlockWork& work) {
+namespace {
+
+template <bool kClumps>
+SCREE_INLINE void leapfrog_as(const LeapfrogView& view, BlockWork& work) {
   Spheres& s = view.spheres;
   const Lanes zero{}, one = zero + 1.0, gravity = {view.gravity.x(), view.gravity.y(), view.gravity.z(), 0},
                       dt = {view.dt, view.dt, view.dt, 0};
@@ -379,6 +381,8 @@ void leapfrog(const LeapfrogView& view, BlockWork& work) {
   Lanes damped = zero, momentum = zero;  // twice the work over dt, and twice the mean momentum
   work.near_rim.clear();
   for (const int i : work.awake) {
+    if constexpr (kClumps)
+      if (s.partner[i] >= 0) continue;
     const Lanes force = load(view.sum[i].force), torque = load(view.sum[i].torque);
     Lanes v = load(s.velocity[i]), w = load(s.spin[i]), x = load(s.place[i]);
     const Lanes alpha = zero + (force[3] > 0 ? view.alpha : view.alpha_in_flight);
@@ -399,6 +403,20 @@ void leapfrog(const LeapfrogView& view, BlockWork& work) {
   work.left_ball = left;
   work.losses.local_damping = 0.5 * view.dt * (damped[0] + damped[1] + damped[2]);
   work.momentum = 0.5 * Vec3(momentum[0], momentum[1], momentum[2]);
+}
+SCREE_VECTORISED
+void leapfrog_of_spheres(const LeapfrogView& view, BlockWork& work) {
+  leapfrog_as<false>(view, work);
+}
+SCREE_VECTORISED
+void leapfrog_beside_clumps(const LeapfrogView& view, BlockWork& work) {
+  leapfrog_as<true>(view, work);
+}
+
+}  // namespace
+
+void leapfrog(const LeapfrogView& view, BlockWork& work) {
+  (view.spheres.partner.empty() ? leapfrog_of_spheres : leapfrog_beside_clumps)(view, work);
 }
 
 }  // namespace scree

@@ -86,7 +86,8 @@ struct LeapfrogView {
   double dt;  ///< s
 };
 
-/// Moves the block's spheres by one step; finds those near the rim of their balls.
+/// Moves the block's spheres by one step, but for those of clumps (clumps.h); finds those near the rim of
+/// their balls.
 void leapfrog(const LeapfrogView& view, BlockWork& work);
 
 }  // namespace scree

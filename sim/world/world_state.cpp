@@ -27,7 +27,7 @@ inline constexpr bool kPlainState<FrictionFactors> = sizeof(FrictionFactors) == 
 
 template <class Stream>
 void state(Stream& stream, Spheres& s) {
-  stream(s.place, s.velocity, s.spin, s.id, s.dump, s.lost, s.asleep, s.movable);
+  stream(s.place, s.velocity, s.spin, s.id, s.dump, s.lost, s.asleep, s.movable, s.partner, s.angular);
 }
 
 template <class Stream>
@@ -142,7 +142,7 @@ void Sleep::state(Stream& stream) {
 
 template <class Stream>
 void RockWorld::shared_state(Stream& stream) {
-  stream.section("world", 1);
+  stream.section("world", 2);
   stream(time_, statistics_, account_, spheres_, fixed_, next_, reserved_, next_fragment_);
   if (Stream::kReads) {  // of the scene as it was built: made again when somebody asks
     for (std::size_t id = 0; id < bodies_.size(); ++id) drop_body(static_cast<std::int64_t>(id));

@@ -69,7 +69,7 @@ TEST(EffectList, AbsentMeansAbsent) {
            m.normal_damping_ratio != none.normal_damping_ratio || m.ground_mu != none.ground_mu ||
            m.ground_mu_r != none.ground_mu_r || m.tool_surface_energy != none.tool_surface_energy ||
            m.density_exponent != none.density_exponent || m.fines_share != none.fines_share ||
-           m.release_speed != none.release_speed || m.vibration.on() || m.breakage.on() ||
+           m.release_speed != none.release_speed || m.vibration.on() || m.breakage.on() || m.clumps.on() ||
            !m.measurement.exact() || m.measurement.border_shift != 0;
   };
   for (const Effect& effect : all_effects()) {
@@ -137,6 +137,8 @@ TEST(ScenarioEffects, FaultsAreSaidAtTheirPlace) {
   EXPECT_THAT(
       folder.messages(std::string(kDump) + "effects: {section_borders: {shift: 1}}\n"),
       ElementsAre(HasSubstr("effects.section_borders.shift: 1 is out of range; allowed -0.9 to 0.9")));
+  EXPECT_THAT(folder.messages(std::string(kDump) + "effects: {breakage: {}, clumps: {}}\n"),
+              ElementsAre(HasSubstr("effects: clumps do not break; take clumps or breakage")));
   EXPECT_THAT(folder.messages(std::string(kDump) + "effects: {breakage: {fragility: 1}}\n"),
               ElementsAre(HasSubstr("unknown key 'fragility' in effects.breakage")));
   EXPECT_THAT(

@@ -114,6 +114,37 @@ TEST(Load, FillsBoxAndCylinderWithoutOverlap) {
   }
 }
 
+TEST(Load, ClumpsFillBoxAndCylinderWithoutOverlapInAllDirections) {
+  const Clumps clumps{0.8};
+  std::vector<double> diameters{2.0, 1.5, 1.0};
+  for (int k = 0; k < 400; ++k) diameters.push_back(0.6 - 0.001 * k);
+  for (const LoadRegion& region : {LoadRegion{{4, 4, 3}}, LoadRegion{{4, 0, 3}}}) {
+    const Load load = fill_region(region, diameters, 1, 1, clumps);
+    ASSERT_EQ(load.axes.size(), diameters.size());
+    double upright = 0;
+    std::vector<std::pair<Vec3, double>> spheres;
+    for (std::size_t i = 0; i < diameters.size(); ++i) {
+      ASSERT_NEAR(load.axes[i].norm(), 1, 1e-12);
+      upright += load.axes[i].z() * load.axes[i].z();
+      const double r = 0.5 * clumps.size() * diameters[i];
+      for (const double side : {-1.0, 1.0}) {
+        const Vec3 x = load.positions[i] + side * clumps.arm() * r * load.axes[i];
+        if (region.length.y() > 0) {
+          EXPECT_TRUE(x.x() <= -r + 1e-12 && x.x() >= -4 + r - 1e-12 && std::abs(x.y()) <= 2 - r + 1e-12);
+        } else {
+          EXPECT_LE(std::hypot(x.x(), x.y()), 2 - r + 1e-12);
+        }
+        EXPECT_TRUE(x.z() >= r - 1e-12 && x.z() <= load.height - r + 1e-12);
+        for (std::size_t j = 0; j < 2 * i; ++j)
+          ASSERT_GE((x - spheres[j].first).norm(), r + spheres[j].second - 1e-12);
+        spheres.emplace_back(x, r);
+      }
+    }
+    EXPECT_NEAR(upright / static_cast<double>(diameters.size()), 1.0 / 3, 0.06);
+  }
+  EXPECT_THROW(fill_region({{2, 2, 1}}, {1.5}, 1, 1, clumps), std::invalid_argument);
+}
+
 TEST(Load, GrowsWhenFullAndRefusesWhatCannotFit) {
   const std::vector<double> many(300, 0.5);
   const Load load = fill_region({{2, 2, 1}}, many, 1, 1);

@@ -1,0 +1,51 @@
+#pragma once
+// Grains that are no spheres: two equal spheres, rigidly joined. Contacts are those of the spheres; the grain
+// moves by the sum of their forces and by the moment about its middle. Half of the mass lies in each sphere,
+// so that momentum, angular momentum and energy of the grain are the sums over its spheres.
+//
+// One step: forces on both spheres at x(t); V(t + dt/2) of the middle and L(t + dt/2), angular momentum about
+// it in world axes, by leapfrog with local damping of the grain's force and moment; spin from L with the axis
+// of t + dt/2; the axis turns by spin dt, exactly; velocities of the spheres are the ways that they make over
+// dt, as their contacts' memory wants them. Angular momentum of a grain in flight is kept to rounding.
+#include "sim/material/vector.h"
+
+namespace scree {
+
+struct Spheres;
+struct NewSphere;
+struct LeapfrogView;
+struct BlockWork;
+
+struct Clumps {
+  /// Distance of the middles of the two spheres over the diameter of one, 0 to 1; 0: grains are spheres. A
+  /// grain is 1 + elongation times as long as it is thick.
+  double elongation = 0;
+
+  bool on() const { return elongation > 0; }
+  /// Diameter of one of the spheres over that of the grain (a sphere of its volume): with the volume of two
+  /// spheres less their common lens, (1 + 1.5 e - 0.5 e^3)^(-1/3).
+  double size() const;
+  /// Length of a grain over its diameter.
+  double length() const { return (1 + elongation) * size(); }
+  /// Distance of a sphere's middle from that of the grain over the sphere's radius.
+  double arm() const { return elongation; }
+};
+
+/// The two spheres of a grain with an axis (a unit vector; zero: along x); the grain's number stays with the
+/// first.
+struct ClumpSpheres {
+  Vec3 place[2], velocity[2];
+  double diameter;        ///< m, of each
+  Vec3 angular_momentum;  ///< kg m2/s, of the grain about its middle
+};
+ClumpSpheres spheres_of_clump(const Clumps& clumps, const NewSphere& grain, double mass);
+
+/// Angular momentum (kg m2/s) of a clump about its middle: spin (rad/s), axis (a unit vector), mass of both
+/// spheres (kg), moment of inertia of one about its own middle (kg m2), its distance from the grain's (m).
+Vec3 clump_angular_momentum(const Vec3& spin, const Vec3& axis, double mass, double inertia, double arm);
+
+/// Moves the clumps whose first sphere is one of the block's awake by one step, after leapfrog(); finds those
+/// near the rim of their balls.
+void move_clumps(const LeapfrogView& view, const Clumps& clumps, BlockWork& work);
+
+}  // namespace scree
