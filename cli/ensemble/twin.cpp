@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kInnerBase = 0.6, kInnerOther = 0.8;  // of the ranges, from which a truth is drawn
 constexpr int kSteps = 60;                             // along an amplitude's range
+constexpr int kMostTries = 2;                          // times the repeats: simulations of a truth
 constexpr std::uint64_t kTwinSeeds = 1'000'000, kSeedsOfOneTwin = 1000;
 
 std::vector<Dataset::Experiment> experiments_of(const DiagnosisModel& model) {
@@ -128,36 +129,50 @@ Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::fil
   std::sort(twin.truth.at.effects.begin(), twin.truth.at.effects.end(),
             [](const auto& a, const auto& b) { return a.effect < b.effect; });
 
-  std::vector<PlannedRun> truth;
-  for (int k = 0; k < spec.repeats; ++k)
-    truth.push_back(
-        {twin.truth.at, kTwinSeeds + spec.seed * kSeedsOfOneTwin + static_cast<std::uint64_t>(k)});
-  std::vector<ExperimentRuns> runs;
-  for (const Dataset::Experiment& each : experiments) {
-    std::vector<PlannedRun> plain = truth;
-    const bool acts =
-        std::any_of(truth.front().at.effects.begin(), truth.front().at.effects.end(),
-                    [&](const EffectAt& e) { return space.effects[e.effect].acts_in(each.name); });
-    if (!acts)
-      for (PlannedRun& run : plain) run.at.effects.clear();
-    Dataset::Experiment made = each;
+  // A simulation that gives no measurement (a heap without a flank) is repeated with another seed.
+  const auto truth_of = [&](std::size_t e, int begin, int count) {
+    ModelPoint at = twin.truth.at;
+    if (std::none_of(at.effects.begin(), at.effects.end(),
+                     [&](const EffectAt& there) { return space.effects[there.effect].acts_in(names[e]); }))
+      at.effects.clear();
+    std::vector<PlannedRun> planned_truth;
+    for (int k = begin; k < begin + count; ++k)
+      planned_truth.push_back({at, kTwinSeeds + spec.seed * kSeedsOfOneTwin + static_cast<std::uint64_t>(k)});
+    Dataset::Experiment made = experiments[e];
     if (!spec.engine.empty()) made.overrides.push_back("engine=" + spec.engine);
-    runs.push_back(runs_of(model, space, made, plain, asset_dir));
+    return runs_of(model, space, made, planned_truth, asset_dir);
+  };
+  std::vector<std::vector<DesignRun>> measured(experiments.size());
+  std::vector<int> tried(experiments.size(), 0);
+  while (true) {
+    std::vector<std::size_t> which;
+    std::vector<ExperimentRuns> runs;
+    for (std::size_t e = 0; e < experiments.size(); ++e) {
+      const int lack = spec.repeats - static_cast<int>(measured[e].size());
+      if (lack == 0) continue;
+      if (tried[e] + lack > kMostTries * spec.repeats)
+        throw std::runtime_error(fmt::format("{}: {} of {} simulations of the truth gave no measurement",
+                                             names[e], tried[e] - static_cast<int>(measured[e].size()),
+                                             tried[e]));
+      runs.push_back(truth_of(e, tried[e], lack));
+      which.push_back(e);
+      tried[e] += lack;
+    }
+    if (runs.empty()) break;
+    const auto ended = done(runs, hidden);
+    for (std::size_t k = 0; k < which.size(); ++k)
+      for (DesignRun& run : gather(runs[k], ended[k], model.experiments[which[k]].observables).runs)
+        measured[which[k]].push_back(std::move(run));
   }
-  const auto measured = done(runs, hidden);
   twin.data.title = fmt::format("Measurements {}", spec.seed);
   twin.data.source = "scree twin " + model.name;
   for (std::size_t e = 0; e < experiments.size(); ++e) {
     const std::vector<std::string>& outputs = model.experiments[e].observables;
-    const GatheredRuns gathered = gather(runs[e], measured[e], outputs);
-    if (gathered.left_out > 0)
-      throw std::runtime_error(fmt::format("{}: {} of {} simulations of the truth gave no measurement",
-                                           names[e], gathered.left_out, spec.repeats));
     DatasetDraft::Experiment draft{names[e], experiments[e].file, experiments[e].overrides, {}};
     for (std::size_t c = 0; c < outputs.size(); ++c) {
       const auto column = static_cast<Eigen::Index>(c);
       std::vector<double> values;
-      for (const DesignRun& run : gathered.runs)
+      for (const DesignRun& run : measured[e])
         values.push_back(run.outputs[column] + std::sqrt(errors[e][column]) * normal(random));
       draft.observables[outputs[c]] = mean_std(values);
     }

@@ -195,6 +195,27 @@ TEST_F(Session, TwinsHaveTheStrengthAskedForAndUseNoSeedOfTheDesign) {
   EXPECT_EQ(values.find("twisting"), std::string::npos);
 }
 
+// What gives no measurement is repeated with another seed; where half of them do, there is no twin.
+TEST_F(Session, TwinsRepeatWhatGivesNoMeasurement) {
+  FormulaSimulator formula;
+  const auto with_failures = [&](std::uint64_t every) {
+    int asked = 0;
+    const auto hidden = [&](const std::vector<RunRequest>& requests) {
+      auto results = formula(requests);
+      for (std::size_t k = 0; k < requests.size(); ++k, ++asked)
+        if (requests[k].seed % every == 0) results[k]->outputs.erase("chi_ring2");
+      return results;
+    };
+    const Twin twin = make_twin(model, {{"cohesion"}, 4, 10, 0.5, 3, ""}, kAssets, std::ref(formula), hidden);
+    EXPECT_EQ(twin.data.experiments.front().observables.at("chi_ring2").n, 10);
+    return asked;
+  };
+  EXPECT_GT(with_failures(4), 10);
+  EXPECT_LT(with_failures(4), 16);
+  EXPECT_EQ(with_failures(1000003), 10);
+  EXPECT_THROW(with_failures(1), std::runtime_error);
+}
+
 TEST_F(Session, ModelFilesAreChecked) {
   const auto error = [&](const std::string& text) {
     write_text_file(folder / "bad.yaml", text);
