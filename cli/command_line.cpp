@@ -52,10 +52,11 @@ Command run_command(CLI::App& all) {
       ->check(CLI::Range(0.0, 1e6));
   app->add_flag("--keep-pile", run.keep_pile,
                 "Leave the finished pile of every seed in its folder, for --pile");
-  app->add_option(
+  CLI::Option* const pile = app->add_option(
       "--pile", run.pile,
       "Do not simulate: read the piles in this run folder, which differ in effects on measurement "
       "only; same results");
+  pile->excludes(app->get_option("--keep-pile"));
   CLI::Option* const resume = app->add_option(
       "--resume", run.resume, "Go on with the run in this folder, killed or interrupted; same results");
   for (const char* other : {"file", "--seeds", "--out", "--set", "--force", "--keep-pile", "--pile"})

@@ -60,8 +60,8 @@ void print_plan(const scree::DiagnosisSession& session, const scree::ResultsStor
     else
       known = to_come.empty() && known;
   }
-  fmt::print("{} simulations, {} of them in the store; then up to {} more of what is named\n", all, there,
-             session.most_further());
+  fmt::print("{} simulations, {} of them in the store; then as a rule up to {} more of what is named\n", all,
+             there, session.most_further());
   for (const std::string& note : session.data().notes) fmt::print("note: {}\n", note);
   if (known)
     fmt::print("about {} of one core are left\n", scree::spell_duration(left));

@@ -98,7 +98,11 @@ std::optional<Plan> plan_new(const RunOptions& options) {
         "--seeds {}: no integers follow the scenario's last seed; give them in its file", options.seeds));
   plan.out = options.out.empty() ? free_run_folder(plan.scenario.name) : options.out;
   plan.pile = options.pile;
-  if (!plan.pile.empty()) check_piles(plan);
+  if (!plan.pile.empty()) {
+    check_piles(plan);
+    if (plan.scenario.output.trajectory)
+      fmt::print(stderr, "warning: a pile that is read has no trajectory; none is written\n");
+  }
   if (!prepare_folder(plan.out, options.force)) return std::nullopt;
   plan.lock = std::make_unique<FolderLock>(plan.out);
   plan.summary_only = options.summary_only;

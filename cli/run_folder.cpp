@@ -65,8 +65,13 @@ RunRecord read_record(const fs::path& folder) {
   }
   try {
     const nlohmann::json json = nlohmann::json::parse(in);
-    return {json.at("program"),      json.at("scenario"),           json.at("name"),     json.at("seeds"),
-            json.at("summary_only"), json.at("checkpoint_minutes"), json.at("keep_pile")};
+    return {json.at("program"),
+            json.at("scenario"),
+            json.at("name"),
+            json.at("seeds"),
+            json.at("summary_only"),
+            json.at("checkpoint_minutes"),
+            json.value("keep_pile", false)};
   } catch (const nlohmann::json::exception&) {
     throw std::runtime_error(fmt::format("{}: damaged; start anew from scenario.yaml with another --out",
                                          record_in(folder).string()));

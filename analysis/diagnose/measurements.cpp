@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/math/special_functions/digamma.hpp>
+#include <boost/math/special_functions/trigamma.hpp>
 #include <cmath>
 #include <limits>
 #include <regex>
@@ -10,11 +11,16 @@ namespace scree {
 namespace {
 
 constexpr double kPriorRepeats = 10;  // what the simulation's scatter counts, in repeats
-constexpr double kLeastRatio = 1e-3;  // of a measured variance to the simulation's: repeats that were rounded
+constexpr double kLeastRatio = 0.05;  // of a measured variance to the simulation's: repeats that were rounded
 
 // Expected logarithm of chi-square of so many degrees of freedom, over them.
 double expected_log(double freedom) {
   return boost::math::digamma(0.5 * freedom) - std::log(0.5 * freedom);
+}
+
+// Degrees of freedom of a variance that is known as well as from that logarithm.
+double freedom_of_log(double freedom) {
+  return 2 / boost::math::trigamma(0.5 * freedom);
 }
 
 bool scatter_is_stated(const Measurements& measured, Eigen::Index k) {
@@ -54,7 +60,7 @@ WorkingCovariance working_covariance(const Measurements& measured,
     const std::vector<Eigen::Index> all = measured.of(e);
     const Eigen::MatrixXd& seeds = surfaces[e]->scatter();
     std::vector<std::size_t> free;  // columns of the experiment
-    double weighted = 0, weight = 0;
+    double weighted = 0, weight = 0, known = 0;
     for (std::size_t c = 0; c < all.size(); ++c) {
       const auto k = static_cast<Eigen::Index>(c);
       if (!scatter_is_stated(measured, all[c]) || !(seeds(k, k) > 0)) continue;
@@ -64,10 +70,11 @@ WorkingCovariance working_covariance(const Measurements& measured,
       const double here = std::max(*value.std * *value.std / seeds(k, k), kLeastRatio);
       weighted += nu * (std::log(here) - expected_log(nu));
       weight += nu;
+      known += freedom_of_log(nu);
     }
     if (free.empty()) continue;
     const double ratio = std::exp(weighted / weight);  // of logarithms: one odd number moves it little
-    freedom += weight;
+    freedom += known;
     for (const std::size_t a : free)
       for (const std::size_t b : free) {
         const MeasuredValue& first = measured.values[static_cast<std::size_t>(all[a])];

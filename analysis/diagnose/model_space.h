@@ -30,6 +30,7 @@ struct CandidateEffect {
   std::vector<EffectAxis> axes;   ///< the amplitude first; others have a range
   std::vector<std::string> acts;  ///< experiments in which it changes anything
   bool measures = false;          ///< it changes how a pile is measured, and not the pile
+  std::string excludes = {};      ///< name of an effect that it cannot go with
 
   double scale() const;
   double amplitude(double coordinate) const { return absent + coordinate * scale(); }

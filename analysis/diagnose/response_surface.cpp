@@ -38,17 +38,22 @@ class Whitening {
   explicit Whitening(const std::vector<DesignRun>& runs) {
     const auto n = static_cast<Eigen::Index>(runs.size());
     Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(n, n);
+    first_ = Eigen::VectorXd::Ones(n);
     for (Eigen::Index i = 0; i < n; ++i)
       for (Eigen::Index j = 0; j < i; ++j) {
         const std::string& pile = runs[static_cast<std::size_t>(i)].pile;
         if (!pile.empty() && pile == runs[static_cast<std::size_t>(j)].pile)
-          correlation(i, j) = correlation(j, i) = kSamePile;
+          correlation(i, j) = correlation(j, i) = kSamePile, first_[i] = 0;
       }
     factor_.compute(correlation);
   }
   Eigen::MatrixXd operator()(const Eigen::MatrixXd& rows) const { return factor_.matrixL().solve(rows); }
+  /// 1 of the first reading of a pile, which stays as it is; 0 of further ones, of which there is left what
+  /// they add to those before.
+  const Eigen::VectorXd& first() const { return first_; }
 
  private:
+  Eigen::VectorXd first_;
   Eigen::LLT<Eigen::MatrixXd> factor_;
 };
 
@@ -246,11 +251,12 @@ ResponseSurface::Fit ResponseSurface::fit(const Features& features, const Eigen:
   fit.size = size;
   fit.residual = y - features.all * fit.mean;
   const Eigen::VectorXd leverage = features.all.cwiseProduct(gain.transpose()).rowwise().sum();
-  fit.freedom = std::max(static_cast<double>(n) - leverage.sum(), 1.0);
+  fit.freedom = std::max(features.counts.dot(Eigen::VectorXd::Ones(n) - leverage), 1.0);
   double sum = 0;
   for (Eigen::Index i = 0; i < n; ++i)
     sum += fit.residual[i] * fit.residual[i] / (fit.scatter * std::max(1 - leverage[i], 1e-6));
   fit.leave_one_out = std::sqrt(sum / static_cast<double>(n));
+  fit.residual = fit.residual.cwiseProduct(features.counts);
   return fit;
 }
 
@@ -267,7 +273,7 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
                     plain, least_base_runs(space.base.size())));
   make_terms(space, runs);
   const Eigen::Index p = runs.front().outputs.size(), k = static_cast<Eigen::Index>(terms_.size());
-  Features features{Eigen::MatrixXd::Zero(n, k), {}};
+  Features features{Eigen::MatrixXd::Zero(n, k), {}, {}};
   Eigen::MatrixXd y(n, p);
   std::vector<Eigen::Index> which;
   std::vector<double> value;
@@ -279,6 +285,7 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
   }
   const Whitening white(runs);
   features.all = white(features.all);
+  features.counts = white.first();
   for (int g = 0; g < groups_; ++g) {
     std::vector<double> prior;
     Group group;

@@ -73,8 +73,8 @@ class ResponseSurface {
     Eigen::MatrixXd covariance;  // of them
     Eigen::VectorXd size;        // by group, a priori
     double scatter;              // variance
-    double freedom;              // runs less coefficients that the data decide
-    Eigen::VectorXd residual;    // by run
+    double freedom;              // piles less coefficients that the data decide
+    Eigen::VectorXd residual;    // by run; 0 of further readings
     double leave_one_out;
   };
   struct Group {  // of terms
@@ -84,6 +84,8 @@ class ResponseSurface {
   };
   struct Features {
     Eigen::MatrixXd all;  // a row a run, a column a term
+    Eigen::VectorXd
+        counts;  // 1 of the first reading of a pile, whose scatter is that of a run; 0 of further ones
     std::vector<Group> groups;
   };
   Fit fit(const Features& features, const Eigen::VectorXd& y) const;

@@ -462,7 +462,8 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   };
   // Simulations at the fitted values do not give the data, whatever surfaces say.
   const auto contradicts = [&](const Judgement& j) {
-    return shown.contains(j.hypothesis.effects) && gap_shown(j).p <= kFitsAbove;
+    const auto there = shown.find(j.hypothesis.effects);
+    return there != shown.end() && !moved(there->second.at, j.best) && gap_shown(j).p <= kFitsAbove;
   };
   const auto contradicted = [&] {
     Contradicted all;
@@ -473,9 +474,14 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   const auto not_calibration = [&] {
     return d.calibration.gap.p <= kFitsAbove || contradicts(d.calibration);
   };
+  Contradicted without;
   outcome.settled = d.verdict.kind == DiagnosisVerdict::Kind::nothing;
   for (int round = 0; round < kMostRounds && !outcome.settled; ++round) {
     ++outcome.rounds;
+    if (Contradicted now = contradicted(); now != without) {
+      without = std::move(now);
+      d = diagnose(space_, data_.measured, model, without);
+    }
     std::vector<std::size_t> known;
     for (const auto& runs : learnt_) known.push_back(runs.size());
     bool fresh = show(d.calibration);
@@ -494,7 +500,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     }
     compare(model, known);
     model = learn();
-    Diagnosis again = diagnose(space_, data_.measured, model, contradicted());
+    Diagnosis again = diagnose(space_, data_.measured, model, without);
     const bool unchanged = same(d.verdict, again.verdict, d, again);
     d = std::move(again);
     outcome.settled = unchanged && is_shown(d.calibration);
@@ -517,12 +523,12 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     }
     const Gap gap = gap_shown(j);
     outcome.notes.push_back(fmt::format(
-        "{} is not named: full simulations with its fitted values do not give the data (p = {:.2g})",
+        "{}: full simulations with the fitted values do not give the data (p = {:.2g}); it is no answer",
         name_of(space_, j.hypothesis), gap.p));
     refute(d, k, gap);
     return false;
   };
-  if (d.verdict.kind == DiagnosisVerdict::Kind::calibration)
+  if (d.verdict.kind == DiagnosisVerdict::Kind::calibration && d.calibration.gap.p > kFitsAbove)
     for (std::size_t k = 0; k < d.judgements.size(); ++k)
       if (const Hypothesis& h = d.judgements[k].hypothesis; h.effects.empty() && !h.unknown) {
         stands(k);

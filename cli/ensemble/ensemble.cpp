@@ -59,8 +59,10 @@ class Ensemble {
       }
     }
     std::error_code ignored;
-    if (idle()) fs::remove_all(piles_folder(), ignored);
-    fs::remove(work_folder(), ignored);  // if nobody works in it
+    if (idle())
+      for (const std::string& pile : piles_) fs::remove_all(piles_folder() / pile, ignored);
+    fs::remove(piles_folder(), ignored);  // if no other program keeps any there
+    fs::remove(work_folder(), ignored);   // if nobody works in it
   }
   Ensemble(const Ensemble&) = delete;
   Ensemble& operator=(const Ensemble&) = delete;
@@ -148,11 +150,13 @@ class Ensemble {
     });
   }
 
-  // Whether a run still to come could read the pile of this one.
+  // Whether another run, to come or under way, can read the pile of this one.
   bool shares_pile(const RunRequest& run) const {
-    const auto same = [&](const RunRequest* other) { return other->pile == run.pile; };
-    return !run.pile.empty() && (std::any_of(waiting_.begin(), waiting_.end(), same) ||
-                                 std::any_of(left_to_others_.begin(), left_to_others_.end(), same));
+    const auto same = [&](const RunRequest* other) { return other != &run && other->pile == run.pile; };
+    return !run.pile.empty() &&
+           (std::any_of(waiting_.begin(), waiting_.end(), same) ||
+            std::any_of(left_to_others_.begin(), left_to_others_.end(), same) ||
+            std::any_of(under_way_.begin(), under_way_.end(), [&](const auto& o) { return same(o.second); }));
   }
 
   // Puts a run's pile where others find it, and takes away one that nobody will read.
@@ -228,7 +232,6 @@ class Ensemble {
       waiting_.insert(waiting_.begin(), request);
       return;
     }
-    sort_piles(*request);
     // A run that was killed or lacked memory or disk has left its checkpoint, one that blew up has not.
     const bool may_go_on = ended.end != JobEnd::good && has_checkpoint(ended.key);
     if (ended.end == JobEnd::interrupted) {
@@ -241,6 +244,7 @@ class Ensemble {
       }
       failure = fmt::format("interrupted {} times", kMostInterruptions);
     }
+    sort_piles(*request);
     const bool ours = failure.empty() ? store_.finish(ended.key, text, outputs, seconds)
                                       : store_.fail(ended.key, failure, seconds);
     if (!ours) return;  // it was taken for dead, and another program does the run now

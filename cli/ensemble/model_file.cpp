@@ -154,7 +154,13 @@ ModelSpace space_of(const DiagnosisModel& model, const std::vector<Dataset::Expe
   for (const std::string& name : model.effects) {
     if (std::find(without.begin(), without.end(), name) != without.end()) continue;
     const Effect& effect = *find_effect(name);
-    CandidateEffect candidate{name, std::string(effect.title), effect.absent, {}, {}, effect.measures};
+    CandidateEffect candidate{name,
+                              std::string(effect.title),
+                              effect.absent,
+                              {},
+                              {},
+                              effect.measures,
+                              std::string(effect.excludes)};
     for (const EffectParameter& p : effect.parameters)
       if (candidate.axes.empty() || p.prior_low < p.prior_high)
         candidate.axes.push_back(

@@ -38,6 +38,7 @@ Effect clumps() {
       .experiments = {"end_dump", "push_dump", "repose_lift", "bucket_dump"},
       .apply = [](std::span<const double> v, const EffectContext&,
                   Modifications& model) { model.clumps.elongation = v[0]; },
+      .excludes = "breakage",
   };
 }
 

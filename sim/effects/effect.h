@@ -66,7 +66,8 @@ struct Effect {
   /// Experiments in which it changes anything; empty: all.
   std::vector<std::string_view> experiments;
   void (*apply)(std::span<const double> values, const EffectContext& context, Modifications& model);
-  bool measures = false;  ///< acts on what is analysed, not on the motion
+  bool measures = false;           ///< acts on what is analysed, not on the motion
+  std::string_view excludes = {};  ///< name of an effect that it cannot go with
 };
 
 /// All effects there are, in the order of the documentation.

@@ -28,8 +28,9 @@ double estimated_spheres(const Grading& grading, double mass, double density) {
 
 double estimated_spheres(const Scenario& scenario) {
   if (std::holds_alternative<DropTest>(scenario.experiment)) return 1;
-  return estimated_spheres(effective_model(scenario).grading, total_mass(scenario),
-                           scenario.material.density);
+  const EffectiveModel model = effective_model(scenario);
+  return (model.changes.clumps.on() ? 2 : 1) *
+         estimated_spheres(model.grading, total_mass(scenario), scenario.material.density);
 }
 
 }  // namespace scree

@@ -85,7 +85,8 @@ class Checks {
   void spheres(double mass, const void* key, std::string_view path, const std::string& load,
                std::string_view cure) {
     if (!grading_ || !notes_.good({&s_.material.density})) return;
-    const double count = estimated_spheres(*grading_, mass, s_.material.density);
+    const double count = (modifications(s_.effects, {}).clumps.on() ? 2 : 1) *
+                         estimated_spheres(*grading_, mass, s_.material.density);
     if (count > kMaxSpheres)
       fail(key,
            fmt::format(
@@ -109,9 +110,12 @@ class Checks {
     if (moves != s_.effects.end() && s_.engine == EngineKind::impulse)
       fail(&moves->values.front(),
            "effects: engine impulse has none but those on measurement; take engine rrlinear");
-    if (const Modifications changes = modifications(s_.effects, {});
-        changes.clumps.on() && changes.breakage.on())
-      fail(&s_.effects.front().values.front(), "effects: clumps do not break; take clumps or breakage");
+    for (const EffectUse& use : s_.effects)
+      for (const EffectUse& other : s_.effects)
+        if (!use.effect->excludes.empty() && use.effect->excludes == other.effect->name &&
+            use.values.front() != use.effect->absent && other.values.front() != other.effect->absent)
+          fail(&use.values.front(), fmt::format("effects: {} and {} do not go together; take one of them",
+                                                use.effect->name, other.effect->name));
     for (const EffectUse& use : s_.effects) {
       const auto& acts_in = use.effect->experiments;
       if (!acts_in.empty() && std::find(acts_in.begin(), acts_in.end(), experiment_type(s_)) == acts_in.end())
@@ -313,9 +317,12 @@ class Checks {
   }
 
   void largest(double room, const void* key, std::string_view path) {
-    if (grading_ && grading_->max_diameter() >= room)
-      fail(key, fmt::format("{}: {} m is not wider than the largest grain of {} ({} m)", path, room,
-                            grading_->name(), grading_->max_diameter()));
+    if (!grading_) return;
+    const Clumps clumps = modifications(s_.effects, {}).clumps;
+    const double length = (clumps.on() ? clumps.length() : 1) * grading_->max_diameter();
+    if (length >= room)
+      fail(key, fmt::format("{}: {} m is not wider than the largest grain of {} ({} m{})", path, room,
+                            grading_->name(), length, clumps.on() ? " long" : ""));
   }
 
   void tools() {

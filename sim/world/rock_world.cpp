@@ -68,6 +68,7 @@ void RockWorld::add_clump(const NewSphere& grain, double mass, std::int64_t id) 
 }
 
 void RockWorld::add_spheres(const std::vector<NewSphere>& spheres) {
+  if (next_ >= reserved_) next_ = std::max(next_, next_fragment_);
   if (settings_.clumps.on())  // grains are numbered in order, their second spheres after them
     reserved_ = std::max(reserved_, next_ + static_cast<std::int64_t>(spheres.size()));
   for (const NewSphere& s : spheres) {

@@ -273,7 +273,7 @@ void RrlinearWorld::mesh_forces(BlockWork& work, double dt) {
       motion.velocity = body.state().velocity_at(point) - v - arm * w.cross(motion.normal);
       motion.spin = body.state().spin - w;
       motion.twist = 0.5 * (w + body.state().spin).dot(motion.normal);
-      motion.reduced_mass = spheres_.velocity[i].w;
+      motion.reduced_mass = spheres_.grain_mass(i);
       motion.dt = last_dt_;
       motion.pulls = 1;  // of one that goes on or begins while pressed
       if (law.pull > 0 && !went_on && c.overlap + opened() <= 0)

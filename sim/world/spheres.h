@@ -39,6 +39,8 @@ struct Spheres {
     return place.capacity() * (3 * sizeof(Quad) + 14) +
            angular.capacity() * (sizeof(Quad) + sizeof(std::int32_t));
   }
+  /// Of the grain that sphere i belongs to, kg.
+  double grain_mass(int i) const { return (partner.empty() || partner[i] < 0 ? 1 : 2) * velocity[i].w; }
   /// The first sphere of a grain, or one that is a grain alone.
   bool leads(int i) const { return partner.empty() || partner[i] < 0 || id[i] < id[partner[i]]; }
   /// A flag of one sphere of a clump holds for the other, too.

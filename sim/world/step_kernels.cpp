@@ -185,8 +185,8 @@ SCREE_INLINE void compute(const StepView& view, BlockWork& work, const FourConta
   if (view.law.has_dashpots()) {
     Lanes m1, m2;
     for (int k = 0; k < kLanes; ++k) {
-      m1[k] = s.velocity[four.first[k]].w;
-      m2[k] = four.second[k] < s.movable ? s.velocity[four.second[k]].w : 1e300;
+      m1[k] = s.grain_mass(four.first[k]);
+      m2[k] = four.second[k] < s.movable ? s.grain_mass(four.second[k]) : 1e300;
     }
     motion.reduced_mass = m1 / (one + m1 / m2);
   } else {

@@ -341,17 +341,17 @@ TEST(ResponseSurface, LearnsFromReadingsOfTheSamePiles) {
   space.effects = {{"blur", "blur", 0, {{"effects.blur.width", "", 0, 1}}, {"one"}, true}};
   constexpr int kWorlds = 40, kPiles = 12;
   double together = 0, alone = 0, worst_change = 0;  // squares of errors
-  double mean_error = 0, mean_variance = 0;
+  double mean_error = 0, mean_variance = 0, scatter = 0;
   for (int world = 0; world < kWorlds; ++world) {
     Random random(static_cast<std::uint64_t>(world), 0, RandomPurpose::design);
     std::vector<DesignRun> runs;
     for (int k = 0; k < kPiles; ++k) {
       const Eigen::VectorXd base = Eigen::VectorXd::Constant(1, -1 + 2 * (k + 0.5) / kPiles);
-      const double scatter = random.uniform(-1, 1);
+      const double of_pile = random.uniform(-1, 1);
       const auto add = [&](double x) {
         ModelPoint at{base, {}};
         if (x > 0) at.effects.push_back({0, Eigen::VectorXd::Constant(1, x)});
-        const double y = 2 * base[0] + 0.6 * x + scatter + 0.1 * random.uniform(-1, 1);
+        const double y = 2 * base[0] + 0.6 * x + of_pile + 0.1 * random.uniform(-1, 1);
         runs.push_back({at, Eigen::VectorXd::Constant(1, y), "pile" + std::to_string(k)});
       };
       add(0);
@@ -364,6 +364,7 @@ TEST(ResponseSurface, LearnsFromReadingsOfTheSamePiles) {
       if (!of.front().pile.empty()) {
         mean_error += without.mean[0] * without.mean[0];
         mean_variance += without.covariance(0, 0);
+        scatter += surface.scatter()(0, 0) / kWorlds;
       }
       return surface.at({middle, {{0, Eigen::VectorXd::Constant(1, 1)}}}).mean[0] - without.mean[0] - 0.6;
     };
@@ -375,6 +376,7 @@ TEST(ResponseSurface, LearnsFromReadingsOfTheSamePiles) {
   }
   EXPECT_LT(together, 0.25 * alone) << "of " << kWorlds << " worlds";
   EXPECT_LT(worst_change, 0.6);
+  EXPECT_NEAR(scatter, (1 + 0.01) / 3, 0.1) << "variance of one run, however often its pile is read";
   EXPECT_LT(mean_error, 2 * mean_variance) << "the mean is not thought better known than it is";
 }
 

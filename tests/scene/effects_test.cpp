@@ -138,7 +138,7 @@ TEST(ScenarioEffects, FaultsAreSaidAtTheirPlace) {
       folder.messages(std::string(kDump) + "effects: {section_borders: {shift: 1}}\n"),
       ElementsAre(HasSubstr("effects.section_borders.shift: 1 is out of range; allowed -0.9 to 0.9")));
   EXPECT_THAT(folder.messages(std::string(kDump) + "effects: {breakage: {}, clumps: {}}\n"),
-              ElementsAre(HasSubstr("effects: clumps do not break; take clumps or breakage")));
+              ElementsAre(HasSubstr("effects: clumps and breakage do not go together; take one of them")));
   EXPECT_THAT(folder.messages(std::string(kDump) + "effects: {breakage: {fragility: 1}}\n"),
               ElementsAre(HasSubstr("unknown key 'fragility' in effects.breakage")));
   EXPECT_THAT(

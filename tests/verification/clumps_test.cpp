@@ -1,6 +1,8 @@
 // Grains of two spheres, against the mechanics of a rigid body that is alike all around its axis.
 #include "sim/world/clumps.h"
 
+#include <set>
+
 #include "sim/effects/effect.h"
 #include "tests/verification/scene.h"
 
@@ -101,6 +103,11 @@ TEST(Clumps, AreSeenAsSpheresOfTheirVolume) {
     EXPECT_NEAR(g.position.z(), 10 - 0.5 * kGravity * 0.25, kGravity * kDt);
   }
   EXPECT_EQ(shot.grains[1].id, 1);
+  world.add_spheres({grain({6, 0, 10}, {0, 0, 1}), grain({9, 0, 10}, {0, 0, 1})});
+  world.advance_to(0.6);
+  std::set<std::int64_t> numbers(world.spheres().id.begin(), world.spheres().id.end());
+  EXPECT_EQ(numbers.size(), 8u) << "each has its own";
+  EXPECT_EQ(world.snapshot().grains.size(), 4u);
   EXPECT_NEAR(shot.grains[0].position.x(), 0.5, 1e-9);
 }
 
