@@ -154,6 +154,26 @@ TEST(Clumps, StandOnASlopeAsLongAsTheyAreLong) {
   }
 }
 
+// Friction by size is that of the grain, not of its smaller spheres: one of D50 slides where tan(slope) > mu.
+TEST(Clumps, FrictionBySizeIsThatOfTheGrain) {
+  const double slope = std::atan(0.4);
+  for (const double exponent : {-2.0, 2.0})
+    for (const double mu : {0.37, 0.44}) {
+      WorldSettings settings = clumped(undamped(0), 0.6);
+      settings.fixed_time_step = 0;
+      settings.material.local_damping = 0.3;
+      settings.contact_effects.mu_exponent = exponent;
+      settings.contact_effects.reference_diameter = 2 * kRadius;
+      settings.gravity = kGravity * Vec3(std::sin(slope), 0, -std::cos(slope));
+      RrlinearWorld world(settings);
+      add_floor(world, {mu, 0.0});
+      world.add_spheres({grain({0, 0, kRadius * Clumps{0.6}.size()}, {1, 0, 0})});
+      world.advance_to(3.0);
+      const double went = world.snapshot().grains.front().position.x();
+      EXPECT_EQ(went > 0.2 * kRadius, mu < 0.4) << mu << " " << exponent << ": " << went;
+    }
+}
+
 // Force and moment beyond what rest takes: a grain that is dropped upright, out of line by a hair, ends
 // lying.
 TEST(Clumps, EndLyingAndSleep) {
