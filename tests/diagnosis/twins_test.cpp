@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using testing::HasSubstr;
 
-// A load of 40 t over a bench of 4 m, four effects: some 50 simulations of a third of
+// A load of 40 t over a bench of 4 m, four effects: some 70 simulations of a third of
 // a second.
 const char* const kModel = R"(title: Dump
 parameters:
@@ -26,7 +26,7 @@ parameters:
 ties: {material.mu_r: material.mu}
 set: {effects.reference.diameter_m: 0.54}
 effects: [cohesion, sticky_tools, image_blur, section_borders]
-simulations: {nominal: 6, base: 22, effect: 9, check: 3}
+simulations: {nominal: 6, base: 22, effect: 12, check: 4}
 experiments:
   dump:
     scenario: SOURCE/scenarios/small_dump.yaml
