@@ -82,9 +82,9 @@ void check_piles(const Plan& plan) {
   if (fs::equivalent(plan.pile, plan.out, none))
     throw std::runtime_error(
         fmt::format("--pile {}: is the folder of the new run, too; give another --out", plan.pile.string()));
+  const std::string hash = pile_hash(plan.scenario);
   for (const std::uint64_t seed : plan.scenario.seeds)
-    Checkpoints(folder_of(plan.pile, seed), {program_version(), {}, seed, 0}, 0)
-        .pile(pile_hash(plan.scenario));
+    Checkpoints(folder_of(plan.pile, seed), {program_version(), {}, seed, 0}, 0).pile(hash);
 }
 
 std::optional<Plan> plan_new(const RunOptions& options) {
@@ -192,7 +192,7 @@ int run_run(const RunOptions& options) {
     settings.checkpoint_minutes = plan.record.checkpoint_minutes;
     settings.resume = plan.resume;
     settings.keep_finished = runs.size() > 1;
-    settings.pile = pile_hash(scenario);
+    if (plan.record.keep_pile || !plan.pile.empty()) settings.pile = pile_hash(scenario);
     settings.keep_pile = plan.record.keep_pile;
     for (int w = 0; w < side_by_side; ++w)
       workers.emplace_back([&] {

@@ -197,6 +197,7 @@ Evidence integrate(const std::function<double(const Eigen::VectorXd&)>& log_like
     }
     samples = draw(proposals.back());
     last.insert(last.end(), samples.begin(), samples.end());
+    if (stage + 1 < kLastStages) continue;
     logs.clear();
     for (const Sample& s : last) {
       std::vector<double> densities;

@@ -68,8 +68,9 @@ RunRequest run_request(Scenario scenario, std::uint64_t seed, const std::string&
     return hash_of("scree " + version + "\n" + bullet + write_scenario(scenario, asset_dir));
   };
   request.key = key();
-  std::erase_if(scenario.effects, [](const EffectUse& use) { return use.effect->measures; });
-  request.pile = key();
+  const auto measuring =
+      std::erase_if(scenario.effects, [](const EffectUse& use) { return use.effect->measures; });
+  request.pile = measuring > 0 ? key() : request.key;
   return request;
 }
 

@@ -99,7 +99,7 @@ Load fill_region(const LoadRegion& region, const std::vector<double>& diameters,
   Load load;
   load.height = region.length.z();
   if (diameters.empty()) return load;
-  const double largest = diameters.front() * (clumps.on() ? clumps.length() : 1.0);
+  const double largest = clumps.length() * diameters.front();
   const double width =
       region.length.y() == 0 ? region.length.x() : std::min(region.length.x(), region.length.y());
   if (largest > width)

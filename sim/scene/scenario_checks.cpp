@@ -319,7 +319,7 @@ class Checks {
   void largest(double room, const void* key, std::string_view path) {
     if (!grading_) return;
     const Clumps clumps = modifications(s_.effects, {}).clumps;
-    const double length = (clumps.on() ? clumps.length() : 1) * grading_->max_diameter();
+    const double length = clumps.length() * grading_->max_diameter();
     if (length >= room)
       fail(key, fmt::format("{}: {} m is not wider than the largest grain of {} ({} m{})", path, room,
                             grading_->name(), length, clumps.on() ? " long" : ""));

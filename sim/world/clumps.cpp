@@ -20,20 +20,16 @@ struct Inertia {
   }
 };
 
-// alpha |f| sign(v); see locally_damped().
+// What local damping takes of a force.
 Vec3 damping(const Vec3& f, const Vec3& v, double alpha) {
   Vec3 d;
-  for (int k = 0; k < 3; ++k) d[k] = alpha * std::abs(f[k]) * (v[k] > 0 ? 1.0 : v[k] < 0 ? -1.0 : 0.0);
+  for (int k = 0; k < 3; ++k) d[k] = f[k] - locally_damped(f[k], v[k], alpha);
   return d;
 }
 
-// Rodrigues' rotation.
 Vec3 turned(const Vec3& v, const Vec3& turn) {
   const double angle = turn.norm();
-  if (angle == 0) return v;
-  const Vec3 axis = turn / angle;
-  const double c = std::cos(angle);
-  return c * v + std::sin(angle) * axis.cross(v) + (1 - c) * axis.dot(v) * axis;
+  return angle > 0 ? Vec3(Eigen::AngleAxisd(angle, turn / angle) * v) : v;
 }
 
 }  // namespace
