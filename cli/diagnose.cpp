@@ -64,7 +64,7 @@ void print_plan(const scree::DiagnosisSession& session, const scree::ResultsStor
              there, session.most_further());
   for (const std::string& note : session.data().notes) fmt::print("note: {}\n", note);
   if (known)
-    fmt::print("about {} of one core are left\n", scree::spell_duration(left));
+    fmt::print("about {} are left, one run after another\n", scree::spell_duration(left));
   else
     fmt::print("nothing is known of the time of some experiments yet: their first simulations will tell\n");
 }

@@ -53,13 +53,14 @@ class Executor {
   virtual void cancel() = 0;
 };
 
-/// Runs `places` processes of the program side by side, one thread each. They die with this program, however
-/// it ends.
+/// Runs `places` processes of the program side by side, of `threads` threads each. They die with this
+/// program, however it ends.
 class LocalProcesses final : public Executor {
  public:
   /// `program`: this very program, even if its file was replaced meanwhile, unless a test names another.
   /// `checkpoint_minutes`: wall time between checkpoints of a run; 0: none.
-  LocalProcesses(int places, double checkpoint_minutes, std::filesystem::path program = "/proc/self/exe");
+  LocalProcesses(int places, int threads, double checkpoint_minutes,
+                 std::filesystem::path program = "/proc/self/exe");
   ~LocalProcesses() override;
   int free_places() const override;
   void start(const Job& job) override;
@@ -74,7 +75,7 @@ class LocalProcesses final : public Executor {
     double started;  // s, steady clock
   };
   std::filesystem::path program_;
-  int places_;
+  int places_, threads_;
   double checkpoint_minutes_;
   std::vector<Process> processes_;
 };

@@ -72,8 +72,12 @@ std::string words_in(const std::filesystem::path& log) {
 
 }  // namespace
 
-LocalProcesses::LocalProcesses(int places, double checkpoint_minutes, std::filesystem::path program)
-    : program_(std::move(program)), places_(places), checkpoint_minutes_(checkpoint_minutes) {}
+LocalProcesses::LocalProcesses(int places, int threads, double checkpoint_minutes,
+                               std::filesystem::path program)
+    : program_(std::move(program)),
+      places_(places),
+      threads_(threads),
+      checkpoint_minutes_(checkpoint_minutes) {}
 
 LocalProcesses::~LocalProcesses() {
   cancel();
@@ -90,9 +94,8 @@ void LocalProcesses::start(const Job& job) {
   if (job.resume) words = {program, "run", "--resume", out};
   if (job.keep_pile && !job.resume) words.emplace_back("--keep-pile");  // one that goes on knows it
   if (!job.pile.empty()) words.insert(words.end(), {"--pile", job.pile.string()});
-  for (const char* word : {"--threads", "1", "--summary-only", "--checkpoint-minutes"})
-    words.emplace_back(word);
-  words.push_back(fmt::format("{}", checkpoint_minutes_));
+  words.insert(words.end(), {"--threads", fmt::format("{}", threads_), "--summary-only",
+                             "--checkpoint-minutes", fmt::format("{}", checkpoint_minutes_)});
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
