@@ -38,14 +38,17 @@ Lateral analyse_lateral(const std::vector<Grain>& pile, const std::vector<Grain>
                     points, strip_width, crest_height));
   std::vector<std::map<int, NamedGrains>> strips(static_cast<std::size_t>(n));
   std::vector<WeighedValue> first_point;
-  for (const Grain& grain : pile) {
-    const int slice = slice_of(grain, crest_height, n, measured.border_shift);
-    if (slice < 0) continue;
-    const double y = grain.position.y();
-    strips[static_cast<std::size_t>(slice)][static_cast<int>(std::lround(y / strip_width))].grains.push_back(
-        &grain);
-    if (slice == n - 1 && (grain.dump - 1) % points == 0) first_point.push_back({y, grain.mass});
-  }
+  const std::vector<NamedGrains> slices = slices_of(pile, crest_height, n, measured);
+  const NamedGrains slope = together(slices);
+  for (std::size_t s = 0; s < slices.size(); ++s)
+    for (std::size_t g = 0; g < slices[s].grains.size(); ++g) {
+      const Grain* grain = slices[s].grains[g];
+      const double y = grain->position.y();
+      NamedGrains& strip = strips[s][static_cast<int>(std::lround(y / strip_width))];
+      strip.grains.push_back(grain);
+      if (!slices[s].seen.empty()) strip.seen.push_back(slices[s].seen[g]);
+      if (s + 1 == slices.size() && (grain->dump - 1) % points == 0) first_point.push_back({y, grain->mass});
+    }
   Lateral lateral;
   lateral.strip_width = strip_width;
   lateral.point1_toe_width = width_of_bulk(first_point);
@@ -58,7 +61,7 @@ Lateral analyse_lateral(const std::vector<Grain>& pile, const std::vector<Grain>
       section.y.push_back(index * strip_width);
       counted.push_back(std::move(strip));
     }
-    for (const Section& strip : tabulate(counted, original, measured).sections) {
+    for (const Section& strip : tabulate(counted, original, measured, &slope).sections) {
       section.chi.push_back(strip.chi);
       section.d50_rel.push_back(strip.d50_rel);
       section.mass.push_back(strip.mass);

@@ -6,22 +6,53 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 
 #include "analysis/counted_grains.h"
 #include "analysis/permeability.h"
+#include "analysis/seen_surface.h"
+#include "analysis/slope_profile.h"
 
 namespace scree {
 
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUsualSlope = 37;  // degrees, of a pile too small to tell
 
-std::optional<PassingCurve> curve_of(const std::vector<const Grain*>& grains, const Measurement& measured) {
-  if (grains.empty()) return std::nullopt;
-  const CountedGrains counted = count_grains(grains, measured);
+std::optional<PassingCurve> curve_of(const NamedGrains& part, const Measurement& measured) {
+  if (part.grains.empty()) return std::nullopt;
+  const CountedGrains counted = count_grains(part.grains, measured, part.seen);
+  if (counted.diameters.empty()) return std::nullopt;
   return PassingCurve(counted.diameters, counted.masses, measured.blur);
+}
+
+// What parts of a pile are compared with.
+PassingCurve reference_of(const std::vector<Grain>& original, const NamedGrains& whole,
+                          const Measurement& measured) {
+  NamedGrains dumped;
+  dumped.grains.reserve(original.size());
+  for (const Grain& grain : original) dumped.grains.push_back(&grain);
+  CountedGrains counted = count_grains(dumped.grains, measured);
+  const CountedGrains pile =
+      measured.own_reference > 0 ? count_grains(whole.grains, measured, whole.seen) : CountedGrains();
+  if (pile.diameters.empty()) return PassingCurve(counted.diameters, counted.masses, measured.blur);
+  const auto scale = [](std::vector<double>& masses, double share) {
+    const double mass = std::accumulate(masses.begin(), masses.end(), 0.0);
+    for (double& each : masses) each *= share / mass;
+  };
+  CountedGrains mixed;
+  const auto add = [&](CountedGrains part, double share) {
+    if (!(share > 0)) return;
+    scale(part.masses, share);
+    mixed.diameters.insert(mixed.diameters.end(), part.diameters.begin(), part.diameters.end());
+    mixed.masses.insert(mixed.masses.end(), part.masses.begin(), part.masses.end());
+  };
+  add(std::move(counted), 1 - measured.own_reference);
+  add(pile, measured.own_reference);
+  return PassingCurve(mixed.diameters, mixed.masses, measured.blur);
 }
 
 /// Preferred numbers R10 (ISO 3) from just below the smallest to just above the largest diameter; 1 m is
@@ -45,14 +76,19 @@ PoreMaterial pore_material(const PassingCurve& curve) {
 
 }  // namespace
 
-SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<Grain>& original,
-                      const Measurement& measured) {
-  if (original.empty()) throw std::invalid_argument("the original material has no grain");
+NamedGrains together(const std::vector<NamedGrains>& parts) {
+  NamedGrains all;
+  for (const NamedGrains& part : parts) {
+    all.grains.insert(all.grains.end(), part.grains.begin(), part.grains.end());
+    all.seen.insert(all.seen.end(), part.seen.begin(), part.seen.end());
+  }
+  return all;
+}
 
-  std::vector<const Grain*> all;
-  all.reserve(original.size());
-  for (const Grain& grain : original) all.push_back(&grain);
-  const PassingCurve whole = *curve_of(all, measured);
+SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<Grain>& original,
+                      const Measurement& measured, const NamedGrains* pile) {
+  if (original.empty()) throw std::invalid_argument("the original material has no grain");
+  const PassingCurve whole = reference_of(original, pile != nullptr ? *pile : together(parts), measured);
 
   SectionTable table;
   table.d0_log = whole.mean_log_diameter();
@@ -69,7 +105,7 @@ SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<G
     section.name = part.name;
     section.x_over_l = part.x_over_l;
     section.grains = static_cast<int>(part.grains.size());
-    const auto curve = curve_of(part.grains, measured);
+    const auto curve = curve_of(part, measured);
     const auto diameter = [&](double p) { return curve ? curve->diameter(p) : nan; };
     section.mass = curve ? curve->mass() : 0;
     // A material of one size has no coarser quartile to segregate: chi is not defined.
@@ -107,23 +143,30 @@ int slice_of(const Grain& grain, double crest_height, int n, double border_shift
   return static_cast<int>(std::clamp(below_crest * n - border_shift, 0.0, n - 1.0));
 }
 
+std::vector<NamedGrains> slices_of(const std::vector<Grain>& pile, double crest_height, int n,
+                                   const Measurement& measured) {
+  std::vector<NamedGrains> slices;
+  for (int k = 0; k < n; ++k) slices.push_back({fmt::format("S{}", k + 1), (2.0 * k + 1) / (2.0 * n), {}});
+  std::vector<double> seen;
+  if (measured.surface_share > 0)
+    seen = seen_shares(pile, slope_angle(slope_profile(pile), crest_height).value_or(kUsualSlope));
+  for (std::size_t g = 0; g < pile.size(); ++g) {
+    const int slice = slice_of(pile[g], crest_height, n, measured.border_shift);
+    if (slice < 0) continue;
+    slices[static_cast<std::size_t>(slice)].grains.push_back(&pile[g]);
+    if (!seen.empty()) slices[static_cast<std::size_t>(slice)].seen.push_back(seen[g]);
+  }
+  return slices;
+}
+
 SectionTable analyse_sections(const std::vector<Grain>& pile, const std::vector<Grain>& original,
                               double crest_height, int n, const Measurement& measured) {
   if (n < 1) throw std::invalid_argument(fmt::format("{} sections: at least 1 is needed", n));
   if (!(crest_height > 0))
     throw std::invalid_argument(fmt::format("crest height {} m must be above 0", crest_height));
-  std::vector<NamedGrains> slices;
-  for (int k = 0; k < n; ++k) slices.push_back({fmt::format("S{}", k + 1), (2.0 * k + 1) / (2.0 * n), {}});
-  double outside = 0;
-  for (const Grain& grain : pile) {
-    const int slice = slice_of(grain, crest_height, n, measured.border_shift);
-    if (slice < 0)
-      outside += grain.mass;
-    else
-      slices[static_cast<std::size_t>(slice)].grains.push_back(&grain);
-  }
-  SectionTable table = tabulate(slices, original, measured);
-  table.mass_outside = outside;
+  SectionTable table = tabulate(slices_of(pile, crest_height, n, measured), original, measured);
+  for (const Grain& grain : pile)
+    if (slice_of(grain, crest_height, n) < 0) table.mass_outside += grain.mass;
   return table;
 }
 

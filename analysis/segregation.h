@@ -76,18 +76,28 @@ struct NamedGrains {
   std::string name;
   double x_over_l = 0;
   std::vector<const Grain*> grains;
+  std::vector<double> seen = {};  ///< of each grain (count_grains()); empty: measured through and through
 };
 
 /// Gradings and segregation of parts of a pile against `original` (every grain as dumped). chi = (log
 /// d_section - log d_0) / (log d_CQ - log d_0), thesis chapter 3. `measured`: how diameters are measured, of
-/// the parts and of the original alike. Throws std::invalid_argument when `original` is empty.
+/// the parts and of the original alike. `pile`: for Measurement::own_reference; null: all parts
+/// together. Throws std::invalid_argument when `original` is empty.
 SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<Grain>& original,
-                      const Measurement& measured = {});
+                      const Measurement& measured = {}, const NamedGrains* pile = nullptr);
 
 /// Slice of equal height that a grain lies in, 0 at the crest to n - 1 at the floor; -1 above the crest. A
 /// small grain between the balls of the floor can lie below it: it belongs to the lowest slice.
 /// `border_shift`: as in Measurement.
 int slice_of(const Grain& grain, double crest_height, int n, double border_shift = 0);
+
+/// Cuts the slope into `n` slices by height, each with what is seen of its grains where that is measured.
+/// Grains above the crest are in none.
+std::vector<NamedGrains> slices_of(const std::vector<Grain>& pile, double crest_height, int n,
+                                   const Measurement& measured);
+
+/// All grains of parts.
+NamedGrains together(const std::vector<NamedGrains>& parts);
 
 /// Cuts the slope into `n` slices of equal height between `crest_height` (S1) and 0 (Sn) and analyses each
 /// against `original` (every grain as dumped). Grains above the crest height are outside (counted as

@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kKept = 2;
-constexpr const char kFinished[] = "finished", kPile[] = "pile";
+constexpr const char kFinished[] = "finished";
 
 // By number, rising.
 std::vector<std::pair<int, fs::path>> checkpoints_in(const fs::path& folder) {
@@ -28,6 +28,16 @@ std::vector<std::pair<int, fs::path>> checkpoints_in(const fs::path& folder) {
   return found;
 }
 
+// Throws StateError with what to do where a file is not of the program, scenario and seed that are wanted.
+void check(const fs::path& file, const scree::CheckpointHeader& found, const scree::CheckpointHeader& wanted,
+           std::string_view if_program, std::string_view if_scenario) {
+  if (found.program != wanted.program)
+    throw scree::StateError(fmt::format("{}: made by {}, this is {}: the numbers may differ{}", file.string(),
+                                        found.program, wanted.program, if_program));
+  if (found.scenario != wanted.scenario || found.seed != wanted.seed)
+    throw scree::StateError(fmt::format("{}: {}", file.string(), if_scenario));
+}
+
 }  // namespace
 
 Checkpoints::Checkpoints(fs::path folder, scree::CheckpointHeader header, double minutes)
@@ -42,15 +52,9 @@ std::unique_ptr<scree::CheckpointReader> Checkpoints::open(
     warn(damage.what());
     return nullptr;
   }
-  const scree::CheckpointHeader& header = reader->header();
-  if (header.program != header_.program)
-    throw scree::StateError(
-        fmt::format("{}: made by {}, this is {}: the numbers may differ. Resume with that program, or start "
-                    "anew from scenario.yaml with another --out",
-                    file.string(), header.program, header_.program));
-  if (header.scenario != header_.scenario || header.seed != header_.seed)
-    throw scree::StateError(
-        fmt::format("{}: made of another scenario or seed. Start anew with another --out", file.string()));
+  check(file, reader->header(), header_,
+        ". Resume with that program, or start anew from scenario.yaml with another --out",
+        "made of another scenario or seed. Start anew with another --out");
   return reader;
 }
 
@@ -101,24 +105,19 @@ void Checkpoints::finish(double time, const std::function<void(scree::StateWrite
 void Checkpoints::keep_pile(const std::string& pile, double time,
                             const std::function<void(scree::StateWriter&)>& outcome) const {
   fs::create_directories(folder_);
-  scree::write_checkpoint(folder_ / kPile, {header_.program, pile, header_.seed, time}, outcome);
+  scree::write_checkpoint(folder_ / scree::kPileName, {header_.program, pile, header_.seed, time}, outcome);
 }
 
 std::unique_ptr<scree::CheckpointReader> Checkpoints::pile(const std::string& pile) const {
-  const fs::path file = folder_ / kPile;
+  const fs::path file = folder_ / scree::kPileName;
   std::error_code none;
   if (!fs::exists(file, none))
     throw scree::StateError(
         fmt::format("{}: no such pile; scree run --keep-pile leaves one of each seed", file.string()));
   try {
     auto reader = std::make_unique<scree::CheckpointReader>(file);
-    const scree::CheckpointHeader& header = reader->header();
-    if (header.program != header_.program)
-      throw scree::StateError(fmt::format("{}: made by {}, this is {}: the numbers may differ", file.string(),
-                                          header.program, header_.program));
-    if (header.scenario != pile || header.seed != header_.seed)
-      throw scree::StateError(fmt::format(
-          "{}: a pile of another scenario or seed; only effects on measurement may differ", file.string()));
+    check(file, reader->header(), {header_.program, pile, header_.seed, 0}, "",
+          "a pile of another scenario or seed; only effects on measurement may differ");
     return reader;
   } catch (const scree::DamagedCheckpoint& damage) {
     throw scree::StateError(damage.what());
@@ -127,7 +126,7 @@ std::unique_ptr<scree::CheckpointReader> Checkpoints::pile(const std::string& pi
 
 void Checkpoints::remove_pile_from(const fs::path& folder) {
   std::error_code ignored;
-  fs::remove(folder / kPile, ignored);
+  fs::remove(folder / scree::kPileName, ignored);
 }
 
 void Checkpoints::remove_from(const fs::path& folder) {
@@ -137,7 +136,7 @@ void Checkpoints::remove_from(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))  // of one that was killed
     if (const std::string name = entry.path().filename().string();
         (name.starts_with(scree::kCheckpointName) || name.starts_with(kFinished) ||
-         name.starts_with(kPile)) &&
+         name.starts_with(scree::kPileName)) &&
         name.ends_with(".part"))
       fs::remove(entry.path(), ignored);
   fs::remove(folder, ignored);  // if that was all

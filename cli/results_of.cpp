@@ -233,7 +233,7 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
   if (left_out > 0 && bench_of(scenario))
     result.notes.push_back(fmt::format("{:.1f} t lie above the crest's height and belong to no section",
                                        left_out / 1000 / static_cast<double>(result.seeds.size())));
-  if (const Measurement measured = measurement_of(scenario); !measured.exact() || measured.border_shift != 0)
+  if (!measurement_of(scenario).truthful())
     result.notes.emplace_back(
         "gradings of sections, strips, cells and rings are as effects of measurement make them; angles, "
         "layers and the inside of the pile are true");

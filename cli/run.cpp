@@ -70,10 +70,6 @@ bool check(const scree::ScenarioResult& loaded) {
   return true;
 }
 
-fs::path folder_of(const fs::path& run, std::uint64_t seed) {
-  return run / fmt::format("seed_{}", seed);
-}
-
 // These throw std::runtime_error with what to do about it.
 
 // Every seed's pile is there and fits.
@@ -84,7 +80,7 @@ void check_piles(const Plan& plan) {
         fmt::format("--pile {}: is the folder of the new run, too; give another --out", plan.pile.string()));
   const std::string hash = pile_hash(plan.scenario);
   for (const std::uint64_t seed : plan.scenario.seeds)
-    Checkpoints(folder_of(plan.pile, seed), {program_version(), {}, seed, 0}, 0).pile(hash);
+    Checkpoints(scree::seed_folder(plan.pile, seed), {program_version(), {}, seed, 0}, 0).pile(hash);
 }
 
 std::optional<Plan> plan_new(const RunOptions& options) {
@@ -154,8 +150,8 @@ std::optional<Plan> make_plan(const RunOptions& options) {
 void forget_checkpoints(const Plan& plan) {
   remove_record(plan.out);
   for (const std::uint64_t seed : plan.scenario.seeds) {
-    scree::TrajectoryWriter::forget_saved(folder_of(plan.out, seed) / "particles.h5");
-    Checkpoints::remove_from(folder_of(plan.out, seed));
+    scree::TrajectoryWriter::forget_saved(scree::seed_folder(plan.out, seed) / "particles.h5");
+    Checkpoints::remove_from(scree::seed_folder(plan.out, seed));
   }
 }
 
@@ -171,7 +167,8 @@ int run_run(const RunOptions& options) {
   const bool checkpoints = plan.record.checkpoint_minutes > 0;
   if (!plan.resume) {
     forget_checkpoints(plan);  // of another run, with --force
-    for (const std::uint64_t seed : scenario.seeds) Checkpoints::remove_pile_from(folder_of(out, seed));
+    for (const std::uint64_t seed : scenario.seeds)
+      Checkpoints::remove_pile_from(scree::seed_folder(out, seed));
     scree::write_text_file(out / "scenario.yaml", scenario.resolved_yaml);
     if (checkpoints) write_record(out, plan.record);
   }
@@ -198,8 +195,8 @@ int run_run(const RunOptions& options) {
       workers.emplace_back([&] {
         for (std::size_t k = next++; k < runs.size() && !interrupted; k = next++) {
           SeedSettings own = settings;
-          own.folder = folder_of(out, runs[k].seed);
-          if (!plan.pile.empty()) own.read_pile = folder_of(plan.pile, runs[k].seed);
+          own.folder = scree::seed_folder(out, runs[k].seed);
+          if (!plan.pile.empty()) own.read_pile = scree::seed_folder(plan.pile, runs[k].seed);
           run_seed(scenario, runs[k], own, display, k);
         }
       });

@@ -162,8 +162,8 @@ class Ensemble {
   // Puts a run's pile where others find it, and takes away one that nobody will read.
   void sort_piles(const RunRequest& run) {
     std::error_code error;
-    const fs::path seed = fmt::format("seed_{}", run.seed), kept = pile_of(run) / seed / "pile",
-                   fresh = folder_of(run.key) / "run" / seed / "pile";
+    const fs::path kept = seed_folder(pile_of(run), run.seed) / kPileName,
+                   fresh = seed_folder(folder_of(run.key) / "run", run.seed) / kPileName;
     if (!shares_pile(run)) {
       if (piles_.erase(run.pile) > 0) fs::remove_all(pile_of(run), error);
       return;

@@ -10,7 +10,8 @@ const std::vector<Effect>& all_effects() {
       cohesion(),        restitution(),     rolling_by_size(),  friction_by_size(), twisting(),
       weakening(),       ground_friction(), sticky_tools(),     undamped_flight(),  density_by_size(),
       missing_fines(),   release_speed(),   breakage(),         clumps(),           vibration(),
-      detection_limit(), image_blur(),      image_shape_bias(), section_borders(),
+      detection_limit(), image_blur(),      image_shape_bias(), section_borders(),  surface_only(),
+      own_reference(),
   };
   return effects;
 }

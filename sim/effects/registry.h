@@ -23,5 +23,7 @@ Effect detection_limit();
 Effect image_blur();
 Effect image_shape_bias();
 Effect section_borders();
+Effect surface_only();
+Effect own_reference();
 
 }  // namespace scree

@@ -107,6 +107,10 @@ void head(Stream& stream, CheckpointHeader& header) {
 
 }  // namespace
 
+std::filesystem::path seed_folder(const std::filesystem::path& run, std::uint64_t seed) {
+  return run / fmt::format("seed_{}", seed);
+}
+
 void write_checkpoint(const std::filesystem::path& file, const CheckpointHeader& header,
                       const std::function<void(StateWriter&)>& state) {
   NewFile out(file);

@@ -24,6 +24,10 @@ namespace scree {
 
 /// How names of checkpoint files begin; a number follows.
 inline constexpr std::string_view kCheckpointName = "checkpoint_";
+/// The file of a seed's pile, which other runs may read.
+inline constexpr std::string_view kPileName = "pile";
+/// Where a run keeps both, and all else that it has of a seed.
+std::filesystem::path seed_folder(const std::filesystem::path& run, std::uint64_t seed);
 
 /// What a checkpoint is of.
 struct CheckpointHeader {

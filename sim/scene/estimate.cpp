@@ -29,7 +29,7 @@ double estimated_spheres(const Grading& grading, double mass, double density) {
 double estimated_spheres(const Scenario& scenario) {
   if (std::holds_alternative<DropTest>(scenario.experiment)) return 1;
   const EffectiveModel model = effective_model(scenario);
-  return (model.changes.clumps.on() ? 2 : 1) *
+  return model.changes.clumps.spheres() *
          estimated_spheres(model.grading, total_mass(scenario), scenario.material.density);
 }
 

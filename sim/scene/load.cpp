@@ -17,52 +17,25 @@ constexpr int kTries = 400;
 constexpr double kGrowth = 1.02;
 constexpr double kDensest = 0.6;  // solid fraction; at random few gradings get denser
 
-// Places the spheres one after another where they touch none before; false when one finds no place.
-bool fill(Load& load, const LoadRegion& region, const std::vector<double>& diameters, Random random) {
-  const bool cylinder = region.length.y() == 0;
-  NeighbourGrid grid;
-  grid.reset(static_cast<int>(diameters.size()), 0.5 * diameters.back(), 0.5 * diameters.front());
-  for (int i = 0; i < static_cast<int>(diameters.size()); ++i) {
-    const double r = 0.5 * diameters[i];
-    bool free = false;
-    for (int tries = 0; tries < kTries && !free; ++tries) {
-      Vec3 x;
-      if (cylinder) {
-        const double rho = (0.5 * region.length.x() - r) * std::sqrt(random.uniform());
-        const double angle = 2.0 * std::numbers::pi * random.uniform();
-        x = {rho * std::cos(angle), rho * std::sin(angle), 0};
-      } else {
-        x = {random.uniform(-region.length.x() + r, -r),
-             random.uniform(-0.5 * region.length.y() + r, 0.5 * region.length.y() - r), 0};
-      }
-      x.z() = random.uniform(r, load.height - r);
-      grid.place(i, x, r);
-      free = true;
-      grid.query(i, [&](int j) {
-        const double reach = r + grid.site(j).w;
-        if ((x - grid.site(j).vec()).squaredNorm() < reach * reach) free = false;
-      });
-      if (free) load.positions.push_back(x);
-    }
-    if (!free) return false;
-  }
-  return true;
-}
-
-// The same of clumps, whose spheres must be free, both.
-bool fill_with_clumps(Load& load, const LoadRegion& region, const std::vector<double>& diameters,
-                      Random random, const Clumps& clumps) {
+// Places the grains one after another where their spheres touch none before; false when one finds no place.
+bool fill(Load& load, const LoadRegion& region, const std::vector<double>& diameters, Random random,
+          const Clumps& clumps) {
   const bool cylinder = region.length.y() == 0;
   const double size = 0.5 * clumps.size();
+  const int each = clumps.spheres();
   NeighbourGrid grid;
-  grid.reset(2 * static_cast<int>(diameters.size()), size * diameters.back(), size * diameters.front());
+  grid.reset(each * static_cast<int>(diameters.size()), size * diameters.back(), size * diameters.front());
   for (int i = 0; i < static_cast<int>(diameters.size()); ++i) {
-    const double r = size * diameters[i], arm = clumps.arm() * r;
+    const double r = size * diameters[i], arm = clumps.elongation * r;
     bool free = false;
     for (int tries = 0; tries < kTries && !free; ++tries) {
-      const double up = random.uniform(-1, 1), around = 2.0 * std::numbers::pi * random.uniform(),
-                   flat = std::sqrt(std::max(0.0, 1 - up * up));
-      const Vec3 axis(flat * std::cos(around), flat * std::sin(around), up);
+      Vec3 axis = Vec3::Zero();
+      double flat = 0;  // its length seen from above
+      if (clumps.on()) {
+        const double up = random.uniform(-1, 1), around = 2.0 * std::numbers::pi * random.uniform();
+        flat = std::sqrt(std::max(0.0, 1 - up * up));
+        axis = {flat * std::cos(around), flat * std::sin(around), up};
+      }
       const Vec3 reach = Vec3::Constant(r) + arm * axis.cwiseAbs();
       Vec3 x;
       if (cylinder) {
@@ -74,18 +47,19 @@ bool fill_with_clumps(Load& load, const LoadRegion& region, const std::vector<do
              random.uniform(-0.5 * region.length.y() + reach.y(), 0.5 * region.length.y() - reach.y()), 0};
       }
       x.z() = random.uniform(reach.z(), load.height - reach.z());
-      grid.place(2 * i, x - arm * axis, r);
-      grid.place(2 * i + 1, x + arm * axis, r);
+      for (int k = 0; k < each; ++k) grid.place(each * i + k, x + (2 * k - 1) * arm * axis, r);
       free = true;
-      for (const int own : {2 * i, 2 * i + 1})
+      for (int k = 0; k < each; ++k) {
+        const int own = each * i + k;
         grid.query(own, [&](int j) {
           const double apart = r + grid.site(j).w;
-          if (j / 2 != i && (grid.site(own).vec() - grid.site(j).vec()).squaredNorm() < apart * apart)
+          if (j / each != i && (grid.site(own).vec() - grid.site(j).vec()).squaredNorm() < apart * apart)
             free = false;
         });
+      }
       if (!free) continue;
       load.positions.push_back(x);
-      load.axes.push_back(axis);
+      if (clumps.on()) load.axes.push_back(axis);
     }
     if (!free) return false;
   }
@@ -116,9 +90,7 @@ Load fill_region(const LoadRegion& region, const std::vector<double>& diameters,
   const auto filled = [&] {
     load.positions.clear();
     load.axes.clear();
-    const Random random(seed, dump, RandomPurpose::positions);
-    return clumps.on() ? fill_with_clumps(load, region, diameters, random, clumps)
-                       : fill(load, region, diameters, random);
+    return fill(load, region, diameters, Random(seed, dump, RandomPurpose::positions), clumps);
   };
   while (!filled()) load.height *= kGrowth;
   return load;

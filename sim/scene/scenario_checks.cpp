@@ -85,7 +85,7 @@ class Checks {
   void spheres(double mass, const void* key, std::string_view path, const std::string& load,
                std::string_view cure) {
     if (!grading_ || !notes_.good({&s_.material.density})) return;
-    const double count = (modifications(s_.effects, {}).clumps.on() ? 2 : 1) *
+    const double count = modifications(s_.effects, {}).clumps.spheres() *
                          estimated_spheres(*grading_, mass, s_.material.density);
     if (count > kMaxSpheres)
       fail(key,

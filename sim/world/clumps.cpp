@@ -45,7 +45,7 @@ Vec3 clump_angular_momentum(const Vec3& spin, const Vec3& axis, double mass, dou
 ClumpSpheres spheres_of_clump(const Clumps& clumps, const NewSphere& grain, double mass) {
   ClumpSpheres two;
   two.diameter = clumps.size() * grain.diameter;
-  const double r = 0.5 * two.diameter, arm = clumps.arm() * r;
+  const double r = 0.5 * two.diameter, arm = clumps.elongation * r;
   const Vec3 axis = grain.axis.squaredNorm() > 0 ? grain.axis : Vec3::UnitX();
   for (int k = 0; k < 2; ++k) {
     const Vec3 out = (k == 0 ? -arm : arm) * axis;
@@ -70,7 +70,7 @@ void move_clumps(const LeapfrogView& view, const Clumps& clumps, BlockWork& work
     const int p = s.partner[i];
     if (p < i) continue;
     const double mass = s.velocity[i].w + s.velocity[p].w, radius = s.place[i].w,
-                 length = clumps.arm() * radius;
+                 length = clumps.elongation * radius;
     const Inertia inertia(mass, s.spin[i].w, length);
     const Vec3 x0 = s.place[i].vec(), x1 = s.place[p].vec(), arm = 0.5 * (x1 - x0), middle = 0.5 * (x0 + x1);
     const Vec3 v = 0.5 * (s.velocity[i].vec() + s.velocity[p].vec()), w = s.spin[i].vec();

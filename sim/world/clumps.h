@@ -18,17 +18,18 @@ struct BlockWork;
 
 struct Clumps {
   /// Distance of the middles of the two spheres over the diameter of one, 0 to 1; 0: grains are spheres. A
-  /// grain is 1 + elongation times as long as it is thick.
+  /// grain is 1 + elongation times as long as it is thick. Also the distance of a sphere's middle from the
+  /// grain's over the sphere's radius.
   double elongation = 0;
 
   bool on() const { return elongation > 0; }
+  /// Of one grain.
+  int spheres() const { return on() ? 2 : 1; }
   /// Diameter of one of the spheres over that of the grain (a sphere of its volume): with the volume of two
   /// spheres less their common lens, (1 + 1.5 e - 0.5 e^3)^(-1/3).
   double size() const;
   /// Length of a grain over its diameter.
   double length() const { return (1 + elongation) * size(); }
-  /// Distance of a sphere's middle from that of the grain over the sphere's radius.
-  double arm() const { return elongation; }
 };
 
 /// The two spheres of a grain with an axis (a unit vector; zero: along x); the grain's number stays with the

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "scree_version.h"
+#include "sim/io/scratch_folder.h"
 #include "tests/cli/call.h"
 
 namespace fs = std::filesystem;
@@ -74,13 +75,6 @@ std::map<std::string, std::uintmax_t> content_of(const fs::path& folder) {
 
 class BadInput : public testing::TestWithParam<const char*> {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "scree_bad_input_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder = name;
-  }
-  void TearDown() override { fs::remove_all(folder); }
-
   void append(const std::string& name, const std::string& text) const {
     fs::create_directories((folder / name).parent_path());
     std::ofstream(folder / name, std::ios::binary | std::ios::app) << text;
@@ -150,7 +144,8 @@ class BadInput : public testing::TestWithParam<const char*> {
 
   void run(const Case& test);
 
-  fs::path folder;
+  scree::ScratchFolder scratch;
+  const fs::path& folder = scratch.path();
   std::string open;     // the file that "| " lines go to
   bool locked = false;  // a file must not be readable
 };

@@ -57,6 +57,7 @@ class FormulaSimulator {
         const double normal = std::sqrt(-2 * std::log(1 - random.uniform())) *
                               std::cos(2 * std::numbers::pi * random.uniform());
         result.outputs[names[k]] = means[k] + 0.3 * normal;
+        if (request.seed > 700'000) result.outputs[names[k]] += (k % 2 == 0 ? 1 : -1) * fits_are_off_by;
       }
       result.outputs["at_rest"] = 1;
       results.emplace_back(std::move(result));
@@ -64,6 +65,7 @@ class FormulaSimulator {
     return results;
   }
   int asked = 0, with_effects = 0;
+  double fits_are_off_by = 0;  ///< what simulations of fitted models differ by from the formulas
 };
 
 class Session : public testing::Test {
@@ -140,6 +142,20 @@ TEST_F(Session, NamesNothingWhereNothingIsHidden) {
     const DiagnosisOutcome o = diagnosed({{}, 0, 5, 0.5, seed, ""});
     EXPECT_TRUE(o.diagnosis.verdict.kind == Kind::nothing || o.diagnosis.verdict.kind == Kind::calibration);
   }
+}
+
+// Surfaces that foretell what the simulator does not do where they are trusted.
+TEST_F(Session, ACalibrationThatItsOwnSimulationsContradictIsNotSaid) {
+  const TwinSpec spec{{}, 0, 5, 0.5, 5, ""};
+  const DiagnosisOutcome sound = diagnosed(spec);
+  ASSERT_EQ(sound.diagnosis.verdict.kind, Kind::calibration);
+  EXPECT_GT(sound.calibrated->gap.p, 0.01);
+  simulator.fits_are_off_by = 4;
+  const DiagnosisOutcome o = diagnosed(spec);
+  EXPECT_EQ(o.diagnosis.verdict.kind, Kind::unknown);
+  EXPECT_TRUE(o.diagnosis.verdict.named.empty());
+  ASSERT_TRUE(o.calibrated.has_value());
+  EXPECT_LE(o.calibrated->gap.p, 0.01);
 }
 
 TEST_F(Session, TheDesignIsTheSameForAllDataAndWhenAnEffectIsLeftOut) {

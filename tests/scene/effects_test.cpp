@@ -70,7 +70,7 @@ TEST(EffectList, AbsentMeansAbsent) {
            m.ground_mu_r != none.ground_mu_r || m.tool_surface_energy != none.tool_surface_energy ||
            m.density_exponent != none.density_exponent || m.fines_share != none.fines_share ||
            m.release_speed != none.release_speed || m.vibration.on() || m.breakage.on() || m.clumps.on() ||
-           !m.measurement.exact() || m.measurement.border_shift != 0;
+           !m.measurement.truthful();
   };
   for (const Effect& effect : all_effects()) {
     EffectUse use{&effect, {}};

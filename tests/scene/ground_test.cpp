@@ -128,7 +128,7 @@ TEST(Load, ClumpsFillBoxAndCylinderWithoutOverlapInAllDirections) {
       upright += load.axes[i].z() * load.axes[i].z();
       const double r = 0.5 * clumps.size() * diameters[i];
       for (const double side : {-1.0, 1.0}) {
-        const Vec3 x = load.positions[i] + side * clumps.arm() * r * load.axes[i];
+        const Vec3 x = load.positions[i] + side * clumps.elongation * r * load.axes[i];
         if (region.length.y() > 0) {
           EXPECT_TRUE(x.x() <= -r + 1e-12 && x.x() >= -4 + r - 1e-12 && std::abs(x.y()) <= 2 - r + 1e-12);
         } else {

@@ -1,4 +1,5 @@
 // A small load pushed over the crest of a small bench.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include "scree_version.h"
 #include "sim/scene/blade_passes.h"
 #include "sim/scene/run.h"
+#include "sim/scene/watch.h"
 
 namespace scree {
 namespace {
@@ -52,6 +54,18 @@ TEST(PushDump, BladeSweepsTheLoadOverTheCrest) {
     EXPECT_LT(grain.position.z() - 0.5 * grain.diameter, 4 + 0.5);
   }
   EXPECT_LT(mass_behind(outcome, -0.5), 0.1 * mass);
+}
+
+// The blade moves both spheres of a grain, and its work is in the balance.
+TEST(PushDump, BladeSweepsClumps) {
+  const RunOutcome outcome = run_scenario(small_push({"effects.clumps.elongation=0.6"}), 1, 1, {});
+  EXPECT_TRUE(outcome.at_rest);
+  EXPECT_THAT(watch_failures(outcome), testing::IsEmpty());
+  EXPECT_EQ(outcome.statistics.lost_particles, 0);
+  double mass = 0;
+  for (const Grain& grain : outcome.final_state.grains) mass += grain.mass;
+  EXPECT_NEAR(mass, 20e3, 0.005 * 20e3);
+  EXPECT_LT(mass_behind(outcome, -0.5), 0.15 * mass);
 }
 
 TEST(PushDump, BladeThatStopsEarlyLeavesTheLoadOnTheBench) {

@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "analysis/counted_grains.h"
 #include "analysis/half_cone.h"
 #include "analysis/heap_shape.h"
 #include "analysis/lateral.h"
+#include "analysis/seen_surface.h"
 #include "sim/effects/effect.h"
 
 namespace scree {
@@ -119,7 +121,9 @@ TEST(Measurement, IsContinuousWhereAnEffectBegins) {
        std::vector<std::pair<std::string, std::vector<double>>>{{"image_blur", {1e-6}},
                                                                 {"detection_limit", {1e-6, 6}},
                                                                 {"image_shape_bias", {1e-6}},
-                                                                {"section_borders", {1e-6}}}) {
+                                                                {"section_borders", {1e-6}},
+                                                                {"surface_only", {1e-6}},
+                                                                {"own_reference", {1e-6}}}) {
     const std::vector<double> with = seen(measured_with(name, values));
     ASSERT_EQ(with.size(), none.size()) << name;
     for (std::size_t k = 0; k < none.size(); ++k)
@@ -211,6 +215,95 @@ TEST(SectionBorders, StripsFollowTheSections) {
     pile[k].position = Vec3(0, 0, 10 * (1 - (static_cast<double>(k) + 0.5) / 4000));
   const Lateral lateral = analyse_lateral(pile, pile, 10, 4, 1, 4, measured_with("section_borders", {0.25}));
   EXPECT_NEAR(lateral.sections[0].mass[0], 1250, 1);
+}
+
+Grain grain_at(const Vec3& x, double diameter) {
+  Grain grain;
+  grain.position = x;
+  grain.diameter = diameter;
+  grain.mass = 2760 * std::numbers::pi / 6 * diameter * diameter * diameter;
+  grain.dump = 1;
+  return grain;
+}
+
+// Of the disc of a grain an equal one before it, d aside, covers the lens 2 r^2 acos(d / 2r) - d/2 (4 r^2 -
+// d^2)^(1/2).
+TEST(SeenShares, LeaveOutTheLensThatAnotherCovers) {
+  const double r = 0.5, d = 0.6, angle = 30, slope = angle * std::numbers::pi / 180;
+  const Vec3 down(std::cos(slope), 0, -std::sin(slope)), out(std::sin(slope), 0, std::cos(slope));
+  const Vec3 behind(1, 2, 3);
+  const std::vector<Grain> pile{
+      grain_at(behind, 2 * r), grain_at(behind + d * down + 3 * r * out, 2 * r),
+      grain_at(behind - 2 * r * out, r),  // wholly covered by the first
+      grain_at(behind + 3 * down, 0.02),  // alone
+  };
+  const std::vector<double> seen = seen_shares(pile, angle);
+  const double lens = 2 * r * r * std::acos(d / (2 * r)) - 0.5 * d * std::sqrt(4 * r * r - d * d);
+  EXPECT_NEAR(seen[0], 1 - lens / (std::numbers::pi * r * r), 0.003);
+  EXPECT_EQ(seen[1], 1);
+  EXPECT_EQ(seen[2], 0);
+  EXPECT_EQ(seen[3], 1);
+  EXPECT_THROW(seen_shares(pile, 90), std::invalid_argument);
+  EXPECT_TRUE(seen_shares({}, 30).empty());
+}
+
+// Blocks on a slope of 37 degrees with stones behind each: of the stones nothing is seen. Mean log d, and so
+// chi, is linear in the share.
+TEST(SurfaceOnly, ShowsWhatIsNotCovered) {
+  const double slope = 37 * std::numbers::pi / 180, height = 6;
+  const Vec3 down(std::cos(slope), 0, -std::sin(slope)), out(std::sin(slope), 0, std::cos(slope));
+  std::vector<Grain> pile, original;
+  for (int i = 0; i < 9; ++i)
+    for (int j = -3; j <= 3; ++j) {
+      const Vec3 block = Vec3(0.5, j, 5.7) + i * down;
+      pile.push_back(grain_at(block, 0.9));
+      for (int k = 0; k < 4; ++k) pile.push_back(grain_at(block - (0.6 + 0.2 * k) * out, 0.2));
+      for (int k = 0; k < 5; ++k) original.push_back(grain_at(block, 0.1 + 0.2 * k));
+    }
+  const auto chi = [&](double share) {
+    const auto sections =
+        analyse_sections(pile, original, height, 3, measured_with("surface_only", {share})).sections;
+    std::vector<double> all;
+    for (const Section& s : sections) all.push_back(s.chi);
+    return all;
+  };
+  std::vector<Grain> blocks;
+  for (const Grain& grain : pile)
+    if (grain.diameter > 0.5) blocks.push_back(grain);
+  const auto shown = analyse_sections(blocks, original, height, 3).sections;
+  const auto truth = chi(0), half = chi(0.5), surface = chi(1);
+  for (std::size_t s = 0; s < 3; ++s) {
+    EXPECT_GT(surface[s], truth[s] + 0.01);
+    EXPECT_NEAR(surface[s], shown[s].chi, 1e-12);
+    EXPECT_NEAR(half[s], 0.5 * (truth[s] + surface[s]), 1e-12);
+  }
+  const auto whole_pile = analyse_sections(pile, original, height, 3),
+             seen = analyse_sections(pile, original, height, 3, measured_with("surface_only", {1.0}));
+  for (std::size_t s = 0; s < 3; ++s)
+    EXPECT_NEAR(seen.sections[s].mass, whole_pile.sections[s].mass, 1e-6) << "mass is not what is seen";
+}
+
+// Against the pile itself the mean of chi by mass is 0; log d_0 is linear in the share. Strips of a section
+// refer to the whole slope.
+TEST(OwnReference, ComparesWithThePile) {
+  auto pile = lognormal_rock(1.3 * kD50, 0.5);
+  const auto original = lognormal_rock(kD50, 0.4);
+  for (std::size_t k = 0; k < pile.size(); ++k)  // finer above, and on the left
+    pile[k].position = Vec3(0, static_cast<double>(k % 100) * 0.1 - 5,
+                            10 * (1 - (static_cast<double>(k) + 0.5) / static_cast<double>(pile.size())));
+  const auto table = [&](double share) {
+    return analyse_sections(pile, original, 10, 4, measured_with("own_reference", {share}));
+  };
+  double moment = 0;
+  for (const Section& s : table(1).sections) moment += s.mass * s.chi;
+  EXPECT_NEAR(moment / 4000, 0, 1e-9);
+  EXPECT_NEAR(table(1).d0_log, std::log10(1.3 * kD50), 1e-6);
+  EXPECT_NEAR(table(0.25).d0_log, 0.75 * table(0).d0_log + 0.25 * table(1).d0_log, 1e-12);
+  const Lateral lateral = analyse_lateral(pile, original, 10, 4, 1, 4, measured_with("own_reference", {1.0}));
+  double of_strips = 0;
+  for (const LateralSection& s : lateral.sections)
+    for (std::size_t k = 0; k < s.chi.size(); ++k) of_strips += s.mass[k] * s.chi[k];
+  EXPECT_NEAR(of_strips / 4000, 0, 1e-9);
 }
 
 }  // namespace
