@@ -50,6 +50,31 @@ double amplitude(const CandidateEffect& effect, int k, int count) {
   return std::abs(here) > 1e-6 ? here : 0.5 * high / count;
 }
 
+// Readings of the piles over the base parameters with these effects on measurement, spread over their
+// amplitudes and other parameters.
+void read_piles(const ModelSpace& space, const SimulationCounts& counts,
+                const std::vector<std::size_t>& effects, int readings, std::vector<PlannedRun>& runs) {
+  std::string names;
+  std::size_t axes = 0;
+  for (const std::size_t e : effects) names += space.effects[e].name, axes += space.effects[e].axes.size();
+  const auto points = latin_hypercube(readings, static_cast<int>(axes), hash_of(names));
+  for (int k = 0; k < readings; ++k) {
+    const PlannedRun& plain = runs[static_cast<std::size_t>(counts.nominal + k % counts.base)];
+    PlannedRun reading{{plain.at.base, {}}, plain.seed};
+    std::size_t axis = 0;
+    for (const std::size_t e : effects) {
+      const CandidateEffect& effect = space.effects[e];
+      const auto& unit = points[static_cast<std::size_t>(k)];
+      Eigen::VectorXd at(static_cast<Eigen::Index>(effect.axes.size()));
+      at << amplitude(effect, static_cast<int>(unit[axis] * readings), readings),
+          coordinates(unit, axis + 1, effect.axes.size() - 1);
+      axis += effect.axes.size();
+      reading.at.effects.push_back({e, at});
+    }
+    runs.push_back(std::move(reading));
+  }
+}
+
 bool moved(const ModelPoint& a, const ModelPoint& b) {
   if (a.effects.size() != b.effects.size()) return true;
   double most = (a.base - b.base).cwiseAbs().maxCoeff();
@@ -114,15 +139,10 @@ std::vector<PlannedRun> design_of(const ModelSpace& space, const SimulationCount
     const std::size_t others = effect.axes.size() - 1;
     const std::uint64_t own = hash_of(effect.name);
     if (effect.measures) {
-      const auto points = latin_hypercube(counts.effect, static_cast<int>(1 + others), own);
-      for (int k = 0; k < counts.effect; ++k) {
-        const PlannedRun& plain = runs[static_cast<std::size_t>(counts.nominal + k % counts.base)];
-        const auto& unit = points[static_cast<std::size_t>(k)];
-        Eigen::VectorXd at(static_cast<Eigen::Index>(1 + others));
-        at << amplitude(effect, static_cast<int>(unit[0] * counts.effect), counts.effect),
-            coordinates(unit, 1, others);
-        runs.push_back({{plain.at.base, {{e, at}}}, plain.seed});
-      }
+      read_piles(space, counts, {e}, counts.effect, runs);
+      for (std::size_t before = 0; before < e; ++before)
+        if (space.effects[before].measures)
+          read_piles(space, counts, {before, e}, (counts.effect + 1) / 2, runs);
       continue;
     }
     seed = kEffectSeeds + own % 100 * kSeedsOfOneEffect;

@@ -28,9 +28,9 @@ struct PlannedRun {
 };
 
 /// The simulations that a diagnosis needs whatever the data: nominal, over the base parameters, and of every
-/// effect; one on measurement reads piles of those over the base parameters. They depend on the model and
-/// the effects' names alone, so that all data of the same experiments share them, and leaving an effect out
-/// changes nothing for the others.
+/// effect; those on measurement, and each two of them, read piles of those over the base parameters. They
+/// depend on the model and the effects' names alone, so that all data of the same experiments share them, and
+/// leaving an effect out changes nothing for the others.
 std::vector<PlannedRun> design_of(const ModelSpace& space, const SimulationCounts& counts);
 
 /// The runs of an experiment among these: those whose effects act in it, or that have none. Throws

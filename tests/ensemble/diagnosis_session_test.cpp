@@ -195,6 +195,30 @@ TEST_F(Session, EffectsOnMeasurementReadThePilesOfTheBaseModel) {
     EXPECT_NEAR(std::sqrt(widths[k]), static_cast<double>(k + 1) / 10, 1e-12);
 }
 
+// How two effects on measurement act together is known before anything is named.
+TEST_F(Session, PairsOfEffectsOnMeasurementAreReadToo) {
+  std::ifstream in(folder / "model.yaml");
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  text.replace(text.find("rolling_by_size, restitution]"), 29, "image_blur, section_borders]");
+  write_text_file(folder / "measuring.yaml", text);
+  const auto measuring = load_model(folder / "measuring.yaml", kAssets);
+  ASSERT_TRUE(measuring.errors.empty()) << measuring.errors.front().text();
+  const DiagnosisSession session(measuring.model, data_of({{"cohesion"}, 4, 5, 0.5, 8, ""}), {}, kAssets);
+  const ExperimentRuns& heap = session.design()[0];
+  std::set<std::string> piles;
+  int pairs = 0;
+  for (std::size_t k = 0; k < heap.runs.size(); ++k) {
+    piles.insert(heap.requests[k].pile);
+    if (heap.runs[k].at.effects.size() < 2) continue;
+    ++pairs;
+    EXPECT_THAT(heap.requests[k].scenario,
+                testing::AllOf(HasSubstr("image_blur"), HasSubstr("section_borders")));
+  }
+  EXPECT_EQ(pairs, 5);
+  EXPECT_EQ(heap.runs.size(), 6u + 24 + 4 * 10 + 5);
+  EXPECT_EQ(piles.size(), 6u + 24 + 2 * 10);
+}
+
 TEST_F(Session, TwinsHaveTheStrengthAskedForAndUseNoSeedOfTheDesign) {
   TwinTruth truth;
   data_of({{"twisting"}, 4, 5, 0.5, 9, ""}, &truth);
