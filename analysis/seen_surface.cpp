@@ -25,14 +25,14 @@ struct Lines {
 
 }  // namespace
 
-std::vector<double> seen_shares(const std::vector<Grain>& pile, double angle) {
-  if (!(angle >= 0 && angle < 90))
+std::vector<double> seen_shares(const std::vector<Grain>& pile, double angle_deg) {
+  if (!(angle_deg >= 0 && angle_deg < 90))
     throw std::invalid_argument("a slope's angle must be from 0 to 90 degrees");
   if (pile.empty()) return {};
-  const double slope = angle * std::numbers::pi / 180;
+  const double slope = angle_deg * std::numbers::pi / 180;
   const Vec3 down(std::cos(slope), 0, -std::sin(slope)), out(std::sin(slope), 0, std::cos(slope));
-  double smallest = std::numeric_limits<double>::max(), low[2] = {smallest, smallest},
-         high[2] = {-smallest, -smallest};
+  constexpr double kAll = std::numeric_limits<double>::max();
+  double smallest = kAll, low[2] = {kAll, kAll}, high[2] = {-kAll, -kAll};
   for (const Grain& grain : pile) {
     const double r = 0.5 * grain.diameter, along[2] = {grain.position.dot(down), grain.position.y()};
     smallest = std::min(smallest, grain.diameter);

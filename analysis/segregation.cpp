@@ -20,7 +20,7 @@ namespace scree {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kUsualSlope = 37;  // degrees, of a pile too small to tell
+constexpr double kUsualSlope = 37;  // degrees: of dumped rock (thesis, table of repose angles)
 
 std::optional<PassingCurve> curve_of(const NamedGrains& part, const Measurement& measured) {
   if (part.grains.empty()) return std::nullopt;
@@ -29,30 +29,27 @@ std::optional<PassingCurve> curve_of(const NamedGrains& part, const Measurement&
   return PassingCurve(counted.diameters, counted.masses, measured.blur);
 }
 
-// What parts of a pile are compared with.
-PassingCurve reference_of(const std::vector<Grain>& original, const NamedGrains& whole,
-                          const Measurement& measured) {
-  NamedGrains dumped;
-  dumped.grains.reserve(original.size());
-  for (const Grain& grain : original) dumped.grains.push_back(&grain);
-  CountedGrains counted = count_grains(dumped.grains, measured);
-  const CountedGrains pile =
-      measured.own_reference > 0 ? count_grains(whole.grains, measured, whole.seen) : CountedGrains();
-  if (pile.diameters.empty()) return PassingCurve(counted.diameters, counted.masses, measured.blur);
-  const auto scale = [](std::vector<double>& masses, double share) {
-    const double mass = std::accumulate(masses.begin(), masses.end(), 0.0);
-    for (double& each : masses) each *= share / mass;
-  };
+// What parts of a pile are compared with, where that is not the rock as dumped alone; none if nothing is
+// seen.
+std::optional<PassingCurve> mixed_reference(const NamedGrains& dumped, const NamedGrains& pile,
+                                            const Measurement& measured) {
   CountedGrains mixed;
-  const auto add = [&](CountedGrains part, double share) {
+  const auto add = [&](const CountedGrains& part, double share) {
     if (!(share > 0)) return;
-    scale(part.masses, share);
+    const double mass = std::accumulate(part.masses.begin(), part.masses.end(), 0.0);
     mixed.diameters.insert(mixed.diameters.end(), part.diameters.begin(), part.diameters.end());
-    mixed.masses.insert(mixed.masses.end(), part.masses.begin(), part.masses.end());
+    for (const double each : part.masses) mixed.masses.push_back(each * share / mass);
   };
-  add(std::move(counted), 1 - measured.own_reference);
-  add(pile, measured.own_reference);
+  add(count_grains(dumped.grains, measured), 1 - measured.own_reference);
+  add(count_grains(pile.grains, measured, pile.seen), measured.own_reference);
+  if (mixed.diameters.empty()) return std::nullopt;
   return PassingCurve(mixed.diameters, mixed.masses, measured.blur);
+}
+
+// Along whose normal a slope is seen, degrees.
+double facing(const std::vector<Grain>& pile, double crest_height) {
+  const auto angle = slope_angle(slope_profile(pile), crest_height);
+  return angle && *angle > 0 && *angle < 90 ? *angle : kUsualSlope;
 }
 
 /// Preferred numbers R10 (ISO 3) from just below the smallest to just above the largest diameter; 1 m is
@@ -88,7 +85,14 @@ NamedGrains together(const std::vector<NamedGrains>& parts) {
 SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<Grain>& original,
                       const Measurement& measured, const NamedGrains* pile) {
   if (original.empty()) throw std::invalid_argument("the original material has no grain");
-  const PassingCurve whole = reference_of(original, pile != nullptr ? *pile : together(parts), measured);
+  NamedGrains all;
+  all.grains.reserve(original.size());
+  for (const Grain& grain : original) all.grains.push_back(&grain);
+  const PassingCurve dumped = *curve_of(all, measured);
+  const auto mixed = measured.own_reference > 0
+                         ? mixed_reference(all, pile != nullptr ? *pile : together(parts), measured)
+                         : std::nullopt;
+  const PassingCurve& whole = mixed ? *mixed : dumped;
 
   SectionTable table;
   table.d0_log = whole.mean_log_diameter();
@@ -97,7 +101,7 @@ SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<G
       std::minmax_element(original.begin(), original.end(),
                           [](const Grain& a, const Grain& b) { return a.diameter < b.diameter; });
   table.sieves = sieves_for(smallest->diameter, largest->diameter);
-  for (const double sieve : table.sieves) table.original_passing.push_back(whole.passing(sieve));
+  for (const double sieve : table.sieves) table.original_passing.push_back(dumped.passing(sieve));
 
   const double spread = table.dcq_log - table.d0_log;
   for (const NamedGrains& part : parts) {
@@ -107,7 +111,7 @@ SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<G
     section.grains = static_cast<int>(part.grains.size());
     const auto curve = curve_of(part, measured);
     const auto diameter = [&](double p) { return curve ? curve->diameter(p) : nan; };
-    section.mass = curve ? curve->mass() : 0;
+    for (const Grain* grain : part.grains) section.mass += grain->mass;
     // A material of one size has no coarser quartile to segregate: chi is not defined.
     section.chi = curve && spread > 0 ? (curve->mean_log_diameter() - table.d0_log) / spread : nan;
     section.d10 = diameter(0.10);
@@ -129,7 +133,7 @@ SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<G
         curve ? section.mass * (1 - curve->passing(1)) : 0;  // kg, until the sum is known
     table.sections.push_back(std::move(section));
   }
-  table.original_above_1m = 1 - whole.passing(1);
+  table.original_above_1m = 1 - dumped.passing(1);
   double above = 0;
   for (const Section& section : table.sections) above += section.share_above_1m;
   for (Section& section : table.sections)
@@ -148,8 +152,7 @@ std::vector<NamedGrains> slices_of(const std::vector<Grain>& pile, double crest_
   std::vector<NamedGrains> slices;
   for (int k = 0; k < n; ++k) slices.push_back({fmt::format("S{}", k + 1), (2.0 * k + 1) / (2.0 * n), {}});
   std::vector<double> seen;
-  if (measured.surface_share > 0)
-    seen = seen_shares(pile, slope_angle(slope_profile(pile), crest_height).value_or(kUsualSlope));
+  if (measured.surface_share > 0) seen = seen_shares(pile, facing(pile, crest_height));
   for (std::size_t g = 0; g < pile.size(); ++g) {
     const int slice = slice_of(pile[g], crest_height, n, measured.border_shift);
     if (slice < 0) continue;

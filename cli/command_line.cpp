@@ -19,8 +19,9 @@ void add_force_flag(CLI::App* app, bool& force) {
 void add_ensemble_options(CLI::App* app, EnsembleOptions& ensemble) {
   app->add_option("--store", ensemble.store,
                   "Results store; default: runs/store.sqlite. What is in it is not run again");
-  app->add_option("--jobs", ensemble.jobs,
-                  "Runs side by side; default: as many as cores. With fewer, each gets more threads")
+  app->add_option(
+         "--jobs", ensemble.jobs,
+         "Runs side by side; default: as many as cores. Where fewer are left to do they get more threads")
       ->check(CLI::Range(1, 1024));
   app->add_flag("--again", ensemble.again, "Try runs that failed before again");
   app->add_option("--checkpoint-minutes", ensemble.checkpoint_minutes,

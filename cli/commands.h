@@ -29,7 +29,7 @@ struct RunOptions {
 /// How the runs of an ensemble are done and kept.
 struct EnsembleOptions {
   std::filesystem::path store;                     ///< empty: runs/store.sqlite
-  int jobs = 0;                                    ///< runs side by side, sharing cores; 0: one a core
+  int jobs = 0;                                    ///< runs side by side, threads of fewer; 0: as many as cores
   bool again = false;                              ///< try runs that failed before again
   double checkpoint_minutes = kCheckpointMinutes;  ///< of each run; 0: none
 };

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -38,10 +37,7 @@ std::unique_ptr<scree::ResultsStore> open_store(const fs::path& named, bool only
 scree::EnsembleProgress run_with_progress(const std::vector<scree::RunRequest>& runs,
                                           scree::ResultsStore& store, const EnsembleOptions& options) {
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  // What cores are left over by few runs side by side serves them as threads.
-  const int places =
-      std::clamp(options.jobs > 0 ? options.jobs : cores, 1, std::max(1, static_cast<int>(runs.size())));
-  scree::LocalProcesses processes(places, std::max(1, cores / places), options.checkpoint_minutes);
+  scree::LocalProcesses processes(options.jobs > 0 ? options.jobs : cores, options.checkpoint_minutes);
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const auto start = std::chrono::steady_clock::now();
   double shown = -1e9;

@@ -233,10 +233,16 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
   if (left_out > 0 && bench_of(scenario))
     result.notes.push_back(fmt::format("{:.1f} t lie above the crest's height and belong to no section",
                                        left_out / 1000 / static_cast<double>(result.seeds.size())));
-  if (!measurement_of(scenario).truthful())
+  const Measurement measured = measurement_of(scenario);
+  if (!measured.truthful())
     result.notes.emplace_back(
         "gradings of sections, strips, cells and rings are as effects of measurement make them; angles, "
         "layers and the inside of the pile are true");
+  if (measured.own_reference > 0)
+    result.notes.push_back(fmt::format(
+        "chi and ratios to the rock as dumped of sections, strips, cells and rings refer to the pile "
+        "itself by {:.0f} % (effects.own_reference)",
+        100 * measured.own_reference));
   if (scenario.bullet)
     result.notes.push_back(
         scenario.bullet->error_deg

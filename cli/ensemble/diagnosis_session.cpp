@@ -60,7 +60,7 @@ void read_piles(const ModelSpace& space, const SimulationCounts& counts,
   const auto points = latin_hypercube(readings, static_cast<int>(axes), hash_of(names));
   for (int k = 0; k < readings; ++k) {
     const PlannedRun& plain = runs[static_cast<std::size_t>(counts.nominal + k % counts.base)];
-    PlannedRun reading{{plain.at.base, {}}, plain.seed};
+    PlannedRun reading{{plain.at.base, {}}, plain.seed, true};
     std::size_t axis = 0;
     for (const std::size_t e : effects) {
       const CandidateEffect& effect = space.effects[e];
@@ -141,7 +141,8 @@ std::vector<PlannedRun> design_of(const ModelSpace& space, const SimulationCount
     if (effect.measures) {
       read_piles(space, counts, {e}, counts.effect, runs);
       for (std::size_t before = 0; before < e; ++before)
-        if (space.effects[before].measures)
+        if (const CandidateEffect& other = space.effects[before];
+            other.measures && other.excludes != effect.name && effect.excludes != other.name)
           read_piles(space, counts, {before, e}, (counts.effect + 1) / 2, runs);
       continue;
     }
@@ -163,10 +164,10 @@ ExperimentRuns runs_of(const DiagnosisModel& model, const ModelSpace& space,
   ExperimentRuns result;
   for (const PlannedRun& run : planned) {
     const auto& effects = run.at.effects;
-    if (!effects.empty() && std::none_of(effects.begin(), effects.end(), [&](const EffectAt& e) {
-          return space.effects[e.effect].acts_in(experiment.name);
-        }))
-      continue;
+    const auto acting = std::count_if(effects.begin(), effects.end(), [&](const EffectAt& e) {
+      return space.effects[e.effect].acts_in(experiment.name);
+    });
+    if (!effects.empty() && acting < (run.where_all_act ? std::ssize(effects) : 1)) continue;
     const ScenarioResult loaded =
         load_scenario(experiment.file, overrides_at(model, space, experiment, run.at), asset_dir);
     if (!loaded.errors.empty())

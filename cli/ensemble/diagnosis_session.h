@@ -25,6 +25,7 @@ struct Stopped : std::runtime_error {
 struct PlannedRun {
   ModelPoint at;
   std::uint64_t seed = 0;
+  bool where_all_act = false;  ///< only in experiments in which every effect acts; else where one does
 };
 
 /// The simulations that a diagnosis needs whatever the data: nominal, over the base parameters, and of every

@@ -179,8 +179,10 @@ class Ensemble {
     tried_.insert(run.key);
     const fs::path folder = folder_of(run.key);
     const bool read = piles_.contains(run.pile), keep = !read && shares_pile(run);
+    const int still = static_cast<int>(waiting_.size()) + 1,
+              threads = read ? 1 : std::max(1, executor_.free_places() / still);
     if (!read && has_checkpoint(run.key) && !refused_.contains(run.key))
-      return executor_.start({run.key, folder, true, keep, {}});
+      return executor_.start({run.key, folder, true, keep, threads, {}});
     std::error_code error;
     fs::remove_all(folder, error);  // of one that was killed
     // Another program that has just ended may take the empty parent away in between.
@@ -189,7 +191,7 @@ class Ensemble {
     if (error) fail_to_write(folder, error.message());
     write_text_file(folder / "scenario.yaml", run.scenario);
     if (read) reading_.insert(run.key);
-    executor_.start({run.key, folder, false, keep, read ? pile_of(run) : fs::path()});
+    executor_.start({run.key, folder, false, keep, threads, read ? pile_of(run) : fs::path()});
   }
 
   void settle(const EndedJob& ended) {

@@ -15,6 +15,7 @@ struct Job {
   std::filesystem::path folder;  ///< holds scenario.yaml
   bool resume = false;           ///< go on with what is in folder/run
   bool keep_pile = false;        ///< leave the finished pile in folder/run
+  int threads = 1;               ///< that it may use
   std::filesystem::path pile;    ///< run folder with the finished pile, to be read instead; empty: simulate
 };
 
@@ -41,7 +42,7 @@ struct ShareDone {
 class Executor {
  public:
   virtual ~Executor() = default;
-  /// Runs that may be started now.
+  /// Threads that may be started now.
   virtual int free_places() const = 0;
   virtual void start(const Job& job) = 0;
   /// A run that has ended since the last call; none when nothing has, after at most `patience` seconds.
@@ -53,14 +54,13 @@ class Executor {
   virtual void cancel() = 0;
 };
 
-/// Runs `places` processes of the program side by side, of `threads` threads each. They die with this
-/// program, however it ends.
+/// Runs processes of the program side by side, of `places` threads in all. They die with this program,
+/// however it ends.
 class LocalProcesses final : public Executor {
  public:
   /// `program`: this very program, even if its file was replaced meanwhile, unless a test names another.
   /// `checkpoint_minutes`: wall time between checkpoints of a run; 0: none.
-  LocalProcesses(int places, int threads, double checkpoint_minutes,
-                 std::filesystem::path program = "/proc/self/exe");
+  LocalProcesses(int places, double checkpoint_minutes, std::filesystem::path program = "/proc/self/exe");
   ~LocalProcesses() override;
   int free_places() const override;
   void start(const Job& job) override;
@@ -75,7 +75,7 @@ class LocalProcesses final : public Executor {
     double started;  // s, steady clock
   };
   std::filesystem::path program_;
-  int places_, threads_;
+  int places_;
   double checkpoint_minutes_;
   std::vector<Process> processes_;
 };

@@ -72,19 +72,17 @@ std::string words_in(const std::filesystem::path& log) {
 
 }  // namespace
 
-LocalProcesses::LocalProcesses(int places, int threads, double checkpoint_minutes,
-                               std::filesystem::path program)
-    : program_(std::move(program)),
-      places_(places),
-      threads_(threads),
-      checkpoint_minutes_(checkpoint_minutes) {}
+LocalProcesses::LocalProcesses(int places, double checkpoint_minutes, std::filesystem::path program)
+    : program_(std::move(program)), places_(places), checkpoint_minutes_(checkpoint_minutes) {}
 
 LocalProcesses::~LocalProcesses() {
   cancel();
 }
 
 int LocalProcesses::free_places() const {
-  return places_ - static_cast<int>(processes_.size());
+  int free = places_;
+  for (const Process& process : processes_) free -= process.job.threads;
+  return free;
 }
 
 void LocalProcesses::start(const Job& job) {
@@ -94,7 +92,7 @@ void LocalProcesses::start(const Job& job) {
   if (job.resume) words = {program, "run", "--resume", out};
   if (job.keep_pile && !job.resume) words.emplace_back("--keep-pile");  // one that goes on knows it
   if (!job.pile.empty()) words.insert(words.end(), {"--pile", job.pile.string()});
-  words.insert(words.end(), {"--threads", fmt::format("{}", threads_), "--summary-only",
+  words.insert(words.end(), {"--threads", fmt::format("{}", job.threads), "--summary-only",
                              "--checkpoint-minutes", fmt::format("{}", checkpoint_minutes_)});
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());

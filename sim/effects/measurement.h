@@ -14,12 +14,13 @@ struct Measurement {
   double reference_diameter = 1;  ///< m
   /// Borders between sections, rings and cells lie this share of a section's length too far down.
   double border_shift = 0;
-  /// Of the grading of a slope's section: what its surface shows (analysis/seen_surface.h).
+  /// Share (0 to 1) of the surface (analysis/seen_surface.h) in the grading of a slope's section.
   double surface_share = 0;
-  /// Of the grading that parts of a pile are compared with: that of the pile instead of the rock as dumped.
+  /// Share (0 to 1) of the pile itself in the grading that its parts are compared with, beside the rock as
+  /// dumped.
   double own_reference = 0;
 
-  /// Diameters and masses are counted as they are.
+  /// Grains that are measured through and through are counted as they are.
   bool exact() const { return detection_limit == 0 && blur == 0 && bias_exponent == 0; }
   /// The whole measurement is.
   bool truthful() const { return exact() && border_shift == 0 && surface_share == 0 && own_reference == 0; }

@@ -11,9 +11,8 @@ Effect own_reference() {
           "measured of the pile.",
       .equation =
           "chi, relative diameters and relative conductivities refer to a grading that is (1 - share) times "
-          "that "
-          "of the rock as dumped and share times that of all sections, cells or rings together, each as "
-          "measured.",
+          "that of the rock as dumped and share times that of all sections, cells or rings, measured as if "
+          "they were one.",
       .source = "chi of the thesis's photographs refers to the grading of each whole slope (table C.7).",
       .parameters = {{.key = "share",
                       .unit = "",

@@ -164,13 +164,19 @@ TEST_F(Cli, EffectsOnMeasurementChangeGradingsAlone) {
     return std::pair(slurp(out / "sections.csv"), nlohmann::json::parse(slurp(out / "summary.json")));
   };
   const auto truth = run("truth", "");
-  EXPECT_EQ(run("absent", " --set effects.image_blur.width=0 --set effects.section_borders.shift=0").first,
+  EXPECT_EQ(run("absent",
+                " --set effects.image_blur.width=0 --set effects.section_borders.shift=0"
+                " --set effects.surface_only.share=0 --set effects.own_reference.share=0")
+                .first,
             truth.first);
-  const auto limited = run("limited", " --set effects.detection_limit.ratio=0.5");
-  EXPECT_NE(limited.first, truth.first);
-  for (std::size_t k = 0; k < truth.second["sections"].size(); ++k)
-    EXPECT_NEAR(limited.second["sections"][k]["mass_t"]["mean"].get<double>(),
-                truth.second["sections"][k]["mass_t"]["mean"].get<double>(), 1e-9);
+  for (const std::string seen :
+       {"detection_limit.ratio=0.5", "surface_only.share=1", "own_reference.share=1"}) {
+    const auto measured = run(seen.substr(0, seen.find('.')), " --set effects." + seen);
+    EXPECT_NE(measured.first, truth.first) << seen;
+    for (std::size_t k = 0; k < truth.second["sections"].size(); ++k)
+      EXPECT_NEAR(measured.second["sections"][k]["mass_t"]["mean"].get<double>(),
+                  truth.second["sections"][k]["mass_t"]["mean"].get<double>(), 1e-9);
+  }
 }
 
 TEST_F(Cli, EffectsAreToldInWords) {

@@ -57,7 +57,9 @@ class FormulaSimulator {
         const double normal = std::sqrt(-2 * std::log(1 - random.uniform())) *
                               std::cos(2 * std::numbers::pi * random.uniform());
         result.outputs[names[k]] = means[k] + 0.3 * normal;
-        if (request.seed > 700'000) result.outputs[names[k]] += (k % 2 == 0 ? 1 : -1) * fits_are_off_by;
+        if (request.seed >
+            700'000)  // those of the design are below, those of twins have a simulator of their own
+          result.outputs[names[k]] += (k % 2 == 0 ? 1 : -1) * fits_are_off_by;
       }
       result.outputs["at_rest"] = 1;
       results.emplace_back(std::move(result));

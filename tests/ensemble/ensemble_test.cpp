@@ -53,7 +53,7 @@ END
 
 TEST_F(Runs, AllComeIntoTheStoreOnce) {
   ResultsStore store(folder / "store.sqlite");
-  LocalProcesses processes(3, 1, 5, program("sleep 0.1"));
+  LocalProcesses processes(3, 5, program("sleep 0.1"));
   requests.push_back(requests.front());  // stands in the sweep twice
   const EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
   EXPECT_EQ(end.runs, 6u);
@@ -73,20 +73,29 @@ TEST_F(Runs, AllComeIntoTheStoreOnce) {
   EXPECT_EQ(begun().size(), 6u) << "a repeated sweep costs nothing";
 }
 
-TEST_F(Runs, EachGetsItsShareOfTheCores) {
+// What is left of a sweep does not leave cores idle.
+TEST_F(Runs, FewerThanPlacesGetMoreThreads) {
   ResultsStore store(folder / "store.sqlite");
-  requests.resize(1);
-  LocalProcesses processes(2, 3, 5, program("echo \"$@\" > " + (folder / "words").string()));
-  EXPECT_EQ(run_ensemble(requests, store, processes, {"1", false}, go_on).done, 1u);
-  std::ifstream in(folder / "words");
-  std::string words;
-  std::getline(in, words);
-  EXPECT_NE(words.find("--threads 3 "), std::string::npos) << words;
+  const auto threads = [&](std::size_t count) {
+    const fs::path words = folder / "words";
+    fs::remove(words);
+    LocalProcesses processes(5, 5, program("echo \"$@\" >> " + words.string() + "; sleep 0.2"));
+    const std::vector<RunRequest> some(requests.begin(), requests.begin() + static_cast<long>(count));
+    EXPECT_EQ(run_ensemble(some, store, processes, {"1", false}, go_on).done, count);
+    EXPECT_EQ(processes.free_places(), 5);
+    std::ifstream in(words);
+    std::string all;
+    for (std::string line; std::getline(in, line);) all += line.substr(line.find("--threads ") + 10, 1);
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  EXPECT_EQ(threads(3), "122");
+  EXPECT_EQ(threads(4), "5") << "three are in the store";
 }
 
 TEST_F(Runs, OneThatFailsDoesNotStopTheRest) {
   ResultsStore store(folder / "store.sqlite");
-  LocalProcesses processes(2, 1, 5,
+  LocalProcesses processes(2, 5,
                            program("echo ' 12 %  about 3 s left'; case $n in 2) echo 'seed 1: it blew up'; "
                                    "exit 1;; 3) kill -9 $$;; 4) exit 0;; esac"));
   EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
@@ -97,7 +106,7 @@ TEST_F(Runs, OneThatFailsDoesNotStopTheRest) {
   EXPECT_NE(store.find("key4")->message.find("not a summary"), std::string::npos);
   end = run_ensemble(requests, store, processes, {"1", false}, go_on);
   EXPECT_EQ(end.ended_here, 0u);
-  LocalProcesses mended(2, 1, 5, program(""));
+  LocalProcesses mended(2, 5, program(""));
   end = run_ensemble(requests, store, mended, {"1", true}, go_on);
   EXPECT_EQ(end.ended_here, 3u);
   EXPECT_EQ(end.done, 6u);
@@ -106,7 +115,7 @@ TEST_F(Runs, OneThatFailsDoesNotStopTheRest) {
 TEST_F(Runs, OneThatIsInterruptedAloneIsDoneAgain) {
   ResultsStore store(folder / "store.sqlite");
   const std::string mark = (folder / "interrupted").string();
-  LocalProcesses processes(2, 1, 5,
+  LocalProcesses processes(2, 5,
                            program("if [ $n = 2 ] && [ ! -e " + mark + " ]; then touch " + mark +
                                    "; exit 130; fi; if [ $n = 4 ]; then exit 130; fi"));
   const EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
@@ -119,7 +128,7 @@ TEST_F(Runs, OneThatIsInterruptedAloneIsDoneAgain) {
 
 TEST_F(Runs, InterruptedOnesAreGivenBackAndEnd) {
   ResultsStore store(folder / "store.sqlite");
-  LocalProcesses processes(2, 1, 5, program("exec sleep 100"));
+  LocalProcesses processes(2, 5, program("exec sleep 100"));
   const auto start = std::chrono::steady_clock::now();
   const EnsembleProgress end =
       run_ensemble(requests, store, processes, {"1", false}, [&](const EnsembleProgress&) {
@@ -147,7 +156,7 @@ TEST_F(Runs, TheTimeLeftCountsWhatIsDoneHere) {
 END
 )";
   fs::permissions(file, fs::perms::owner_all);
-  LocalProcesses processes(1, 1, 5, file);
+  LocalProcesses processes(1, 5, file);
   double most = 0, share = 0;
   const EnsembleProgress end =
       run_ensemble(requests, store, processes, {"1", false}, [&](const EnsembleProgress& p) {
@@ -182,7 +191,7 @@ TEST_F(Runs, ReadingsOfOnePileAreOneSimulation) {
   requests[1].pile = "other";
   {
     ResultsStore store(folder / "store.sqlite");
-    LocalProcesses processes(2, 1, 5, say(keep));
+    LocalProcesses processes(2, 5, say(keep));
     const EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
     EXPECT_EQ(end.done, 6u);
     EXPECT_EQ(how(), (std::vector<std::string>{"0 --keep-pile ", "1  ", "2  piles/one", "3  ", "4  ",
@@ -191,7 +200,7 @@ TEST_F(Runs, ReadingsOfOnePileAreOneSimulation) {
   }
   {  // A pile that is refused is made anew.
     ResultsStore store(folder / "damaged.sqlite");
-    LocalProcesses processes(1, 1, 5, say("case \"$*\" in *--pile*) echo damaged; exit 2;; esac; " + keep));
+    LocalProcesses processes(1, 5, say("case \"$*\" in *--pile*) echo damaged; exit 2;; esac; " + keep));
     const EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
     EXPECT_EQ(end.done, 6u);
     EXPECT_EQ(end.failed, 0u);
@@ -225,7 +234,7 @@ END
     fs::permissions(file, fs::perms::owner_all);
   };
   const auto interrupted_at_checkpoints = [&](ResultsStore& store) {
-    LocalProcesses processes(2, 1, 5, file);
+    LocalProcesses processes(2, 5, file);
     run_ensemble(requests, store, processes, {"1", false}, [&](const EnsembleProgress&) {
       for (const char* key : {"key0", "key1"})
         if (!fs::exists(store.file().string() + ".work/" + key + "/run/seed_1/checkpoint_1")) return true;
@@ -237,7 +246,7 @@ END
   {
     ResultsStore store(folder / "store.sqlite");
     interrupted_at_checkpoints(store);
-    LocalProcesses processes(2, 1, 5, file);
+    LocalProcesses processes(2, 5, file);
     const EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
     EXPECT_EQ(end.done, 2u);
     EXPECT_EQ(this->begun(), (std::vector<std::string>{"anew", "anew", "resumed", "resumed"}));
@@ -246,7 +255,7 @@ END
   }
   {  // One that was killed alone has failed, and is resumed when it is tried again.
     ResultsStore store(folder / "killed.sqlite");
-    LocalProcesses processes(2, 1, 5, file);
+    LocalProcesses processes(2, 5, file);
     fs::remove(folder / "begun");
     std::ofstream(folder / "killing") << "yes";
     EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
@@ -264,7 +273,7 @@ END
     write("echo of another version; exit 2");
     std::ofstream(folder / "refusing") << "yes";
     fs::remove(folder / "begun");
-    LocalProcesses processes(1, 1, 5, file);
+    LocalProcesses processes(1, 5, file);
     const EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
     EXPECT_EQ(end.done, 2u);
     EXPECT_EQ(end.failed, 0u);

@@ -111,7 +111,8 @@ TEST(Measurement, IsContinuousWhereAnEffectBegins) {
     std::vector<double> all;
     const SectionTable table = analyse_sections(pile, original, 2, 2, measured);
     for (const Section& s : table.sections) {
-      all.insert(all.end(), {s.mass, s.chi, s.d10, s.d50, s.d80, s.d90, s.d95});
+      all.insert(all.end(), {s.mass, s.chi, s.d10, s.d50, s.d80, s.d90, s.d95, s.d10_rel, s.d50_rel,
+                             s.d90_rel, s.ksat_rel});
       all.insert(all.end(), s.passing.begin(), s.passing.end());
     }
     return all;
@@ -247,44 +248,90 @@ TEST(SeenShares, LeaveOutTheLensThatAnotherCovers) {
   EXPECT_TRUE(seen_shares({}, 30).empty());
 }
 
-// Blocks on a slope of 37 degrees with stones behind each: of the stones nothing is seen. Mean log d, and so
-// chi, is linear in the share.
-TEST(SurfaceOnly, ShowsWhatIsNotCovered) {
-  const double slope = 37 * std::numbers::pi / 180, height = 6;
-  const Vec3 down(std::cos(slope), 0, -std::sin(slope)), out(std::sin(slope), 0, std::cos(slope));
-  std::vector<Grain> pile, original;
-  for (int i = 0; i < 9; ++i)
-    for (int j = -3; j <= 3; ++j) {
-      const Vec3 block = Vec3(0.5, j, 5.7) + i * down;
-      pile.push_back(grain_at(block, 0.9));
-      for (int k = 0; k < 4; ++k) pile.push_back(grain_at(block - (0.6 + 0.2 * k) * out, 0.2));
-      for (int k = 0; k < 5; ++k) original.push_back(grain_at(block, 0.1 + 0.2 * k));
-    }
-  const auto chi = [&](double share) {
-    const auto sections =
-        analyse_sections(pile, original, height, 3, measured_with("surface_only", {share})).sections;
-    std::vector<double> all;
-    for (const Section& s : sections) all.push_back(s.chi);
-    return all;
-  };
-  std::vector<Grain> blocks;
-  for (const Grain& grain : pile)
-    if (grain.diameter > 0.5) blocks.push_back(grain);
-  const auto shown = analyse_sections(blocks, original, height, 3).sections;
-  const auto truth = chi(0), half = chi(0.5), surface = chi(1);
-  for (std::size_t s = 0; s < 3; ++s) {
-    EXPECT_GT(surface[s], truth[s] + 0.01);
-    EXPECT_NEAR(surface[s], shown[s].chi, 1e-12);
-    EXPECT_NEAR(half[s], 0.5 * (truth[s] + surface[s]), 1e-12);
+// Blocks on a slope with stones behind each, which nobody sees who looks along its normal.
+struct Facade {
+  std::vector<Grain> pile, blocks, original;
+  explicit Facade(double slope_deg) {
+    const double slope = slope_deg * std::numbers::pi / 180;
+    const Vec3 down(std::cos(slope), 0, -std::sin(slope)), out(std::sin(slope), 0, std::cos(slope));
+    for (int i = 0; i * std::sin(slope) < 5.6; ++i)
+      for (int j = -11; j <= 11; ++j) {
+        const Vec3 block = Vec3(0.5, j, 5.7) + i * down;
+        blocks.push_back(grain_at(block, j % 2 == 0 ? 0.9 : 0.8));
+        pile.push_back(blocks.back());
+        for (int k = 0; k < 4; ++k) pile.push_back(grain_at(block - (0.7 + 0.3 * k) * out, 0.2));
+        for (int k = 0; k < 5; ++k) original.push_back(grain_at(block, 0.1 + 0.2 * k));
+      }
   }
-  const auto whole_pile = analyse_sections(pile, original, height, 3),
-             seen = analyse_sections(pile, original, height, 3, measured_with("surface_only", {1.0}));
-  for (std::size_t s = 0; s < 3; ++s)
-    EXPECT_NEAR(seen.sections[s].mass, whole_pile.sections[s].mass, 1e-6) << "mass is not what is seen";
+};
+
+std::vector<double> chi_of(const SectionTable& table) {
+  std::vector<double> all;
+  for (const Section& s : table.sections) all.push_back(s.chi);
+  return all;
 }
 
-// Against the pile itself the mean of chi by mass is 0; log d_0 is linear in the share. Strips of a section
-// refer to the whole slope.
+void expect_near(const std::vector<double>& a, const std::vector<double>& b, double within) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], within) << k;
+}
+
+// Mean log d, and so chi, is linear in the share.
+TEST(SurfaceOnly, ShowsWhatIsNotCovered) {
+  for (const double slope : {20.0, 37.0}) {
+    const Facade wall(slope);
+    const auto seen = [&](double share) {
+      return analyse_sections(wall.pile, wall.original, 6, 3, measured_with("surface_only", {share}));
+    };
+    const auto truth = chi_of(seen(0)), half = chi_of(seen(0.5)), surface = chi_of(seen(1));
+    expect_near(surface, chi_of(analyse_sections(wall.blocks, wall.original, 6, 3)), 1e-12);
+    for (std::size_t s = 0; s < 3; ++s) {
+      EXPECT_GT(surface[s], truth[s] + 0.01);
+      EXPECT_NEAR(half[s], 0.5 * (truth[s] + surface[s]), 1e-12);
+      EXPECT_NEAR(seen(1).sections[s].mass, seen(0).sections[s].mass, 1e-6) << "mass is not what is seen";
+    }
+    const auto strips = [&](const std::vector<Grain>& pile, const Measurement& measured) {
+      std::vector<double> all;
+      for (const LateralSection& s : analyse_lateral(pile, wall.original, 6, 3, 1, 8, measured).sections)
+        all.insert(all.end(), s.chi.begin(), s.chi.end());
+      return all;
+    };
+    EXPECT_GE(strips(wall.blocks, {}).size(), 6u);
+    expect_near(strips(wall.pile, measured_with("surface_only", {1.0})), strips(wall.blocks, {}), 1e-12);
+  }
+}
+
+// Sections of which nothing is seen have a mass and no grading; slopes that rise are seen from where others
+// are.
+TEST(SurfaceOnly, WhatIsHiddenHasNoGrading) {
+  std::vector<Grain> pile;
+  for (int j = -3; j <= 3; ++j) {
+    pile.push_back(
+        grain_at(Vec3(1, 0.2 * j, 1), 0.1));  // in the lower half, under a boulder in the upper one
+    pile.push_back(grain_at(Vec3(1 + 5 * std::sin(0.6), 0, 1 + 5 * std::cos(0.6)), 2.5));
+  }
+  const auto sections = analyse_sections(pile, pile, 8, 2, measured_with("surface_only", {1.0})).sections;
+  EXPECT_TRUE(std::isfinite(sections[0].chi));
+  EXPECT_TRUE(std::isnan(sections[1].chi) && std::isnan(sections[1].d50));
+  EXPECT_NEAR(sections[1].mass, 7 * pile[0].mass, 1e-9);
+  Facade wall(37);
+  for (Grain& grain : wall.pile) grain.position.x() *= -1;
+  for (const double chi :
+       chi_of(analyse_sections(wall.pile, wall.original, 6, 3, measured_with("surface_only", {1.0}))))
+    EXPECT_TRUE(std::isfinite(chi));
+}
+
+// Both, as on photographs of a slope: the blocks against the blocks.
+TEST(SurfaceOnly, ThePileItselfIsWhatIsSeenOfIt) {
+  const Facade wall(37);
+  Measurement both = measured_with("surface_only", {1.0});
+  both.own_reference = 1;
+  expect_near(chi_of(analyse_sections(wall.pile, wall.original, 6, 3, both)),
+              chi_of(analyse_sections(wall.blocks, wall.blocks, 6, 3)), 1e-12);
+}
+
+// Against the pile itself, measured as it is, the mean of chi by mass is 0; log d_0 is linear in the share.
+// Strips of a section refer to the whole slope.
 TEST(OwnReference, ComparesWithThePile) {
   auto pile = lognormal_rock(1.3 * kD50, 0.5);
   const auto original = lognormal_rock(kD50, 0.4);
@@ -299,11 +346,14 @@ TEST(OwnReference, ComparesWithThePile) {
   EXPECT_NEAR(moment / 4000, 0, 1e-9);
   EXPECT_NEAR(table(1).d0_log, std::log10(1.3 * kD50), 1e-6);
   EXPECT_NEAR(table(0.25).d0_log, 0.75 * table(0).d0_log + 0.25 * table(1).d0_log, 1e-12);
+  EXPECT_LT(table(1).sections[0].chi, -0.2);
   const Lateral lateral = analyse_lateral(pile, original, 10, 4, 1, 4, measured_with("own_reference", {1.0}));
-  double of_strips = 0;
-  for (const LateralSection& s : lateral.sections)
-    for (std::size_t k = 0; k < s.chi.size(); ++k) of_strips += s.mass[k] * s.chi[k];
-  EXPECT_NEAR(of_strips / 4000, 0, 1e-9);
+  for (std::size_t s = 0; s < 4; ++s) {
+    const LateralSection& strips = lateral.sections[s];
+    double of_strips = 0;
+    for (std::size_t k = 0; k < strips.chi.size(); ++k) of_strips += strips.mass[k] * strips.chi[k];
+    EXPECT_NEAR(of_strips, table(1).sections[s].mass * table(1).sections[s].chi, 1e-6);
+  }
 }
 
 }  // namespace
