@@ -19,7 +19,6 @@ namespace fs = std::filesystem;
 // Seeds of simulations; those of `scree twin` are others (twin.cpp).
 constexpr std::uint64_t kBaseSeeds = 500'000, kEffectSeeds = 510'000, kCheckSeeds = 700'000;
 constexpr std::uint64_t kSeedsOfOneEffect = 1000;
-constexpr int kMostRounds = 4;
 constexpr int kExplored = 2;     // rounds in which what is open of the leading effect is simulated, too
 constexpr double kRivalBy = 20;  // ratio of probabilities up to which a rival is simulated, too
 constexpr std::size_t kMostRivals = 2;
@@ -263,9 +262,10 @@ std::vector<ExperimentRuns> DiagnosisSession::in_every_experiment(
 int DiagnosisSession::most_further() const {
   // A round simulates the calibrated model, the leading effect, its rivals, and what would be named; the end
   // what is named.
-  const int points = (3 + static_cast<int>(kMostRivals)) * kMostRounds + 1;
+  const int points = (3 + static_cast<int>(kMostRivals)) * model_.simulations.rounds + 1;
   return static_cast<int>(design_.size()) *
-         (points * model_.simulations.check + kExplored * model_.simulations.effect);
+         (points * model_.simulations.check +
+          std::min(kExplored, model_.simulations.rounds) * model_.simulations.effect);
 }
 
 void DiagnosisSession::learn_from(const std::vector<ExperimentRuns>& runs, const RunThrough& run,
@@ -497,7 +497,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   };
   Contradicted without;
   outcome.settled = d.verdict.kind == DiagnosisVerdict::Kind::nothing;
-  for (int round = 0; round < kMostRounds && !outcome.settled; ++round) {
+  for (int round = 0; round < model_.simulations.rounds && !outcome.settled; ++round) {
     ++outcome.rounds;
     if (Contradicted now = contradicted(); now != without) {
       without = std::move(now);

@@ -132,11 +132,12 @@ DiagnosisModelResult load_model(const fs::path& file, const fs::path& asset_dir)
   read_effects(*root, model, reader);
   if (const YamlNode* counts = reader.map_at(*root, "simulations", false, "a map of numbers")) {
     SimulationCounts& n = model.simulations;
-    reader.allow(*counts, {"nominal", "base", "effect", "check"}, " in simulations");
+    reader.allow(*counts, {"nominal", "base", "effect", "check", "rounds"}, " in simulations");
     reader.integer(*counts, "nominal", 2, 1000, n.nominal);
     reader.integer(*counts, "base", ResponseSurface::least_base_runs(model.base.size()), 1000, n.base);
     reader.integer(*counts, "effect", 4, 1000, n.effect);
     reader.integer(*counts, "check", 2, 1000, n.check);
+    reader.integer(*counts, "rounds", 1, 20, n.rounds);
   }
   model.simulations.base =
       std::max(model.simulations.base, ResponseSurface::least_base_runs(model.base.size()));

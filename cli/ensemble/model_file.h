@@ -25,6 +25,7 @@ struct SimulationCounts {
   int base = 24;    ///< over the ranges of the base parameters
   int effect = 10;  ///< of each effect
   int check = 4;    ///< of a fitted model, with fresh seeds
+  int rounds = 4;   ///< of simulating fitted models and fitting again, at most
 };
 
 struct DiagnosisModel {
@@ -48,7 +49,7 @@ struct DiagnosisModelResult {
 ///   ties: {material.mu_r: material.mu}
 ///   set: {KEY: VALUE}
 ///   effects: [cohesion, twisting]          default: all there are
-///   simulations: {nominal: 6, base: 24, effect: 10, check: 4}
+///   simulations: {nominal: 6, base: 24, effect: 10, check: 4, rounds: 4}
 ///   experiments: {NAME: {scenario: FILE, set: {..}, observables: [angle_deg], errors: {angle_deg: 0.5}}}
 /// The experiments are for twins and may be left out.
 DiagnosisModelResult load_model(const std::filesystem::path& file, const std::filesystem::path& asset_dir);

@@ -132,6 +132,17 @@ TEST_F(Session, NamesTheEffectThatATwinHides) {
   }
 }
 
+TEST_F(Session, TakesNoMoreRoundsThanTheModelAllows) {
+  const TwinSpec spec{{"cohesion"}, 6, 5, 0.5, 3, ""};
+  simulator.fits_are_off_by = 1.5;  // so that fits move
+  EXPECT_GT(diagnosed(spec).rounds, 1);
+  const int all = simulator.asked;
+  model.simulations.rounds = 1;
+  simulator.asked = 0;
+  EXPECT_EQ(diagnosed(spec).rounds, 1);
+  EXPECT_LT(simulator.asked, all);
+}
+
 TEST_F(Session, SaysUnknownWithoutTheEffectInItsLibrary) {
   const DiagnosisOutcome o = diagnosed({{"restitution"}, 8, 5, 0.5, 4, ""}, {"restitution"});
   EXPECT_EQ(o.diagnosis.verdict.kind, Kind::unknown);
@@ -273,6 +284,7 @@ TEST_F(Session, ModelFilesAreChecked) {
   EXPECT_THAT(error(head + "effects: [cohesoin]\n"), HasSubstr("did you mean 'cohesion'"));
   EXPECT_THAT(error(head + "effects: [cohesion, cohesion]\n"), HasSubstr("stands twice"));
   EXPECT_THAT(error(head + "simulations: {effect: 2}\n"), HasSubstr("from 4 to 1000"));
+  EXPECT_THAT(error(head + "simulations: {rounds: 0}\n"), HasSubstr("from 1 to 20"));
   EXPECT_THAT(error(head + "experiments: {a: {scenario: none.yaml, observables: [angle_deg]}}\n"),
               HasSubstr("no file"));
 }
