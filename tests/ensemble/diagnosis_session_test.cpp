@@ -134,7 +134,7 @@ TEST_F(Session, NamesTheEffectThatATwinHides) {
 
 TEST_F(Session, TakesNoMoreRoundsThanTheModelAllows) {
   const TwinSpec spec{{"cohesion"}, 6, 5, 0.5, 3, ""};
-  simulator.fits_are_off_by = 1.5;  // so that fits move
+  simulator.fits_are_off_by = 4;  // so that fits move
   EXPECT_GT(diagnosed(spec).rounds, 1);
   const int all = simulator.asked;
   model.simulations.rounds = 1;
