@@ -39,7 +39,7 @@ Lateral analyse_lateral(const std::vector<Grain>& pile, const std::vector<Grain>
   std::vector<std::map<int, NamedGrains>> strips(static_cast<std::size_t>(n));
   std::vector<WeighedValue> first_point;
   const std::vector<NamedGrains> slices = slices_of(pile, crest_height, n, measured);
-  const NamedGrains slope = together(slices);
+  const NamedGrains slope = all_grains_of(slices);
   for (std::size_t s = 0; s < slices.size(); ++s)
     for (std::size_t g = 0; g < slices[s].grains.size(); ++g) {
       const Grain* grain = slices[s].grains[g];

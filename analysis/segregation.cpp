@@ -73,7 +73,7 @@ PoreMaterial pore_material(const PassingCurve& curve) {
 
 }  // namespace
 
-NamedGrains together(const std::vector<NamedGrains>& parts) {
+NamedGrains all_grains_of(const std::vector<NamedGrains>& parts) {
   NamedGrains all;
   for (const NamedGrains& part : parts) {
     all.grains.insert(all.grains.end(), part.grains.begin(), part.grains.end());
@@ -90,7 +90,7 @@ SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<G
   for (const Grain& grain : original) all.grains.push_back(&grain);
   const PassingCurve dumped = *curve_of(all, measured);
   const auto mixed = measured.own_reference > 0
-                         ? mixed_reference(all, pile != nullptr ? *pile : together(parts), measured)
+                         ? mixed_reference(all, pile != nullptr ? *pile : all_grains_of(parts), measured)
                          : std::nullopt;
   const PassingCurve& whole = mixed ? *mixed : dumped;
 

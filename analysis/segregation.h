@@ -100,7 +100,7 @@ std::vector<NamedGrains> slices_of(const std::vector<Grain>& pile, double crest_
                                    const Measurement& measured);
 
 /// All grains of parts.
-NamedGrains together(const std::vector<NamedGrains>& parts);
+NamedGrains all_grains_of(const std::vector<NamedGrains>& parts);
 
 /// Cuts the slope into `n` slices of equal height between `crest_height` (S1) and 0 (Sn) and analyses each
 /// against `original` (every grain as dumped). Grains above the crest height are outside (counted as
