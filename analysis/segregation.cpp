@@ -111,7 +111,10 @@ SectionTable tabulate(const std::vector<NamedGrains>& parts, const std::vector<G
     section.grains = static_cast<int>(part.grains.size());
     const auto curve = curve_of(part, measured);
     const auto diameter = [&](double p) { return curve ? curve->diameter(p) : nan; };
-    for (const Grain* grain : part.grains) section.mass += grain->mass;
+    if (curve)
+      section.mass = curve->mass();
+    else
+      for (const Grain* grain : part.grains) section.mass += grain->mass;
     // A material of one size has no coarser quartile to segregate: chi is not defined.
     section.chi = curve && spread > 0 ? (curve->mean_log_diameter() - table.d0_log) / spread : nan;
     section.d10 = diameter(0.10);

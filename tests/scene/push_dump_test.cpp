@@ -58,7 +58,8 @@ TEST(PushDump, BladeSweepsTheLoadOverTheCrest) {
 
 // The blade moves both spheres of a grain, and its work is in the balance.
 TEST(PushDump, BladeSweepsClumps) {
-  const RunOutcome outcome = run_scenario(small_push({"effects.clumps.elongation=0.6"}), 1, 1, {});
+  const RunOutcome outcome = run_scenario(
+      small_push({"effects.clumps.elongation=0.6", "experiment.load_box_m=[4, 4, 4]"}), 1, 1, {});
   EXPECT_TRUE(outcome.at_rest);
   EXPECT_THAT(watch_failures(outcome), testing::IsEmpty());
   EXPECT_EQ(outcome.statistics.lost_particles, 0);
