@@ -20,7 +20,7 @@ namespace scree {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kUsualSlope = 37;  // degrees: of dumped rock (thesis, table of repose angles)
+constexpr double kUsualSlope = 37;  // degrees: the thesis's reference repose angle
 
 std::optional<PassingCurve> curve_of(const NamedGrains& part, const Measurement& measured) {
   if (part.grains.empty()) return std::nullopt;

@@ -339,8 +339,7 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
     for (std::size_t k = 0; k < std::min(kPairsOfBest, count); ++k)
       for (std::size_t e = 0; e < count; ++e) {
         const std::pair<std::size_t, std::size_t> pair(std::min(order[k], e), std::max(order[k], e));
-        const CandidateEffect &one = space.effects[pair.first], &other = space.effects[pair.second];
-        if (one.excludes == other.name || other.excludes == one.name) continue;
+        if (!space.effects[pair.first].goes_with(space.effects[pair.second])) continue;
         if (e != order[k] && std::find(pairs.begin(), pairs.end(), pair) == pairs.end())
           pairs.emplace_back(pair);
       }

@@ -19,6 +19,10 @@ bool CandidateEffect::acts_in(const std::string& experiment) const {
   return std::find(acts.begin(), acts.end(), experiment) != acts.end();
 }
 
+bool CandidateEffect::goes_with(const CandidateEffect& other) const {
+  return excludes != other.name && other.excludes != name;
+}
+
 Eigen::VectorXd ModelSpace::nominal() const {
   Eigen::VectorXd at(static_cast<Eigen::Index>(base.size()));
   for (std::size_t k = 0; k < base.size(); ++k)

@@ -40,6 +40,7 @@ struct CandidateEffect {
   /// Value of a parameter (0: the amplitude) at a coordinate.
   double value(std::size_t axis, double coordinate) const;
   bool acts_in(const std::string& experiment) const;
+  bool goes_with(const CandidateEffect& other) const;  ///< neither excludes the other
 };
 
 /// An effect that is there, at these coordinates of its parameters.

@@ -140,8 +140,7 @@ std::vector<PlannedRun> design_of(const ModelSpace& space, const SimulationCount
     if (effect.measures) {
       read_piles(space, counts, {e}, counts.effect, runs);
       for (std::size_t before = 0; before < e; ++before)
-        if (const CandidateEffect& other = space.effects[before];
-            other.measures && other.excludes != effect.name && effect.excludes != other.name)
+        if (const CandidateEffect& other = space.effects[before]; other.measures && other.goes_with(effect))
           read_piles(space, counts, {before, e}, (counts.effect + 1) / 2, runs);
       continue;
     }

@@ -91,6 +91,16 @@ class Session : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder); }
 
+  // The model with other effects in its list.
+  DiagnosisModel model_with(const std::string& effects, const std::string& instead_of) const {
+    std::ifstream in(folder / "model.yaml");
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    text.replace(text.find(instead_of), instead_of.size(), effects);
+    write_text_file(folder / "measuring.yaml", text);
+    const auto loaded = load_model(folder / "measuring.yaml", kAssets);
+    EXPECT_TRUE(loaded.errors.empty()) << loaded.errors.front().text();
+    return loaded.model;
+  }
   // A twin's data as diagnose reads them from its files.
   JoinedData data_of(const TwinSpec& spec, TwinTruth* truth = nullptr) {
     FormulaSimulator formula;
@@ -183,13 +193,8 @@ TEST_F(Session, TheDesignIsTheSameForAllDataAndWhenAnEffectIsLeftOut) {
 }
 
 TEST_F(Session, EffectsOnMeasurementReadThePilesOfTheBaseModel) {
-  std::ifstream in(folder / "model.yaml");
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  text.replace(text.find("restitution]"), 12, "image_blur]");
-  write_text_file(folder / "measuring.yaml", text);
-  const auto measuring = load_model(folder / "measuring.yaml", kAssets);
-  ASSERT_TRUE(measuring.errors.empty()) << measuring.errors.front().text();
-  const DiagnosisSession session(measuring.model, data_of({{"cohesion"}, 4, 5, 0.5, 8, ""}), {}, kAssets);
+  const DiagnosisModel measuring = model_with("image_blur]", "restitution]");
+  const DiagnosisSession session(measuring, data_of({{"cohesion"}, 4, 5, 0.5, 8, ""}), {}, kAssets);
   const ExperimentRuns& heap = session.design()[0];
   std::set<std::string> piles, keys;
   std::vector<double> widths;
@@ -210,13 +215,9 @@ TEST_F(Session, EffectsOnMeasurementReadThePilesOfTheBaseModel) {
 
 // How two effects on measurement act together is known before anything is named.
 TEST_F(Session, PairsOfEffectsOnMeasurementAreReadToo) {
-  std::ifstream in(folder / "model.yaml");
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  text.replace(text.find("rolling_by_size, restitution]"), 29, "image_blur, section_borders]");
-  write_text_file(folder / "measuring.yaml", text);
-  const auto measuring = load_model(folder / "measuring.yaml", kAssets);
-  ASSERT_TRUE(measuring.errors.empty()) << measuring.errors.front().text();
-  const DiagnosisSession session(measuring.model, data_of({{"cohesion"}, 4, 5, 0.5, 8, ""}), {}, kAssets);
+  const DiagnosisModel measuring =
+      model_with("image_blur, section_borders]", "rolling_by_size, restitution]");
+  const DiagnosisSession session(measuring, data_of({{"cohesion"}, 4, 5, 0.5, 8, ""}), {}, kAssets);
   const ExperimentRuns& heap = session.design()[0];
   std::set<std::string> piles;
   int pairs = 0;
