@@ -15,6 +15,11 @@ double CandidateEffect::value(std::size_t axis, double coordinate) const {
   return 0.5 * (a.low + a.high + coordinate * (a.high - a.low));
 }
 
+double CandidateEffect::along(double coordinate) const {
+  if (lowest() < 0 && highest() > 0) return coordinate;
+  return std::copysign(std::sqrt(std::abs(coordinate)), coordinate);
+}
+
 bool CandidateEffect::acts_in(const std::string& experiment) const {
   return std::find(acts.begin(), acts.end(), experiment) != acts.end();
 }

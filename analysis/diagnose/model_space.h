@@ -37,6 +37,9 @@ struct CandidateEffect {
   double coordinate(double amplitude) const { return (amplitude - absent) / scale(); }
   double lowest() const { return coordinate(axes[0].low); }    ///< coordinates of the ends of its range
   double highest() const { return coordinate(axes[0].high); }  ///< (amplitude)
+  /// How far along an amplitude is, for distances between models: its coordinate, of effects of one sign the
+  /// square root of it (with that sign). Several do most of what they can in the lowest part of their range.
+  double along(double coordinate) const;
   /// Value of a parameter (0: the amplitude) at a coordinate.
   double value(std::size_t axis, double coordinate) const;
   bool acts_in(const std::string& experiment) const;

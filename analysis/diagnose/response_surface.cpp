@@ -16,15 +16,15 @@ namespace {
 constexpr double kBase1 = 1, kBase2 = 0.5, kBase11 = 0.5, kBase3 = 0.3;
 constexpr double kEffect1 = 1, kEffect2 = 0.6, kEffect3 = 0.4, kWithBase = 0.5, kWithOther = 0.5,
                  kWithOther2 = 0.3, kTogether = 0.5;
-constexpr double kHat = 1;
-constexpr int kHats = 5;           // along an amplitude, each a sixth of the range wide to either side
+constexpr double kHat = 1, kHatWithBase = 0.5, kHatWithBase2 = 0.3;
+constexpr int kHats = 7;           // along an amplitude, each an eighth of the range wide to either side
 constexpr double kConstant = 1e4;  // of the scatter
 
 // Sizes that a group may have, over the scatter; normal prior on their logarithm. Of the product of two
 // effects its mean is that of theirs.
 constexpr std::array<double, 11> kSizes{0.02, 0.1, 0.3, 0.7, 1.5, 3, 6, 15, 50, 200, 1000};
 constexpr double kLogSizeMean = 0, kLogSizeStd = 2;
-constexpr double kLogHatMean = -3, kLogHatStd = 1.5;  // hats are for what polynomials cannot do
+constexpr double kLogHatMean = -1, kLogHatStd = 1.5;  // hats are for what polynomials cannot do
 constexpr int kMostSweeps = 6;
 constexpr double kTiny = 1e-12;  // against rounding: of what is above 0 by its nature
 
@@ -58,8 +58,8 @@ class Whitening {
 };
 
 // 1 at the knot, 0 from its neighbours on; knots of negative amplitudes are negative.
-double hat(double amplitude, int knot) {
-  return std::max(0.0, 1 - std::abs((kHats + 1) * amplitude - knot));
+double hat(double along, int knot) {
+  return std::max(0.0, 1 - std::abs((kHats + 1) * along - knot));
 }
 
 double power(double x, int n) {
@@ -101,6 +101,7 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
           together.emplace(static_cast<int>(a.effect), static_cast<int>(b.effect));
     }
   for (std::size_t e = 0; e < space.effects.size(); ++e) {
+    first_of_effect_.push_back(terms_.size());
     if (!acts_[e] || !simulated[e]) continue;
     const int effect = static_cast<int>(e), group = effect + 1;
     const auto add = [&](double prior, int order, int other) {
@@ -109,13 +110,6 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
     add(kEffect1, 1, 0);
     add(kEffect2, 2, 0);
     add(kEffect3, 3, 0);
-    for (int knot = -kHats; knot <= kHats; ++knot) {
-      if (knot == 0 || (knot < 0 ? space.effects[e].lowest() >= 0 : space.effects[e].highest() <= 0))
-        continue;
-      add(kHat, 0, 0);
-      terms_.back().hat = knot;
-      terms_.back().group += static_cast<int>(space.effects.size());
-    }
     for (std::size_t i = 0; i < p; ++i) {
       add(kWithBase, 1, 0);
       terms_.back().base_power[i] = 1;
@@ -124,46 +118,81 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
       add(kWithOther, 1, static_cast<int>(k));
       add(kWithOther2, 2, static_cast<int>(k));
     }
+    for (int knot = -kHats; knot <= kHats; ++knot) {  // what belongs to one knot stands together
+      if (knot == 0 || (knot < 0 ? space.effects[e].lowest() >= 0 : space.effects[e].highest() <= 0))
+        continue;
+      const auto add_hat = [&](double prior) -> Term& {
+        terms_.push_back({group + static_cast<int>(space.effects.size()), prior, none, effect});
+        terms_.back().hat = knot;
+        return terms_.back();
+      };
+      add_hat(kHat);
+      for (std::size_t i = 0; i < p; ++i) {
+        add_hat(kHatWithBase).base_power[i] = 1;
+        add_hat(kHatWithBase2).base_power[i] = 2;
+      }
+    }
   }
   groups_ = 1 + 2 * static_cast<int>(space.effects.size());
+  first_of_pairs_ = terms_.size();
   for (const auto& [a, b] : together) terms_.push_back({groups_++, kTogether, none, a, 1, 0, b});
   known_pairs_.assign(together.begin(), together.end());
 }
 
-void ResponseSurface::values(const ModelPoint& point, std::vector<Eigen::Index>& which,
-                             std::vector<double>& value) const {
-  which.clear();
-  value.clear();
-  std::array<const EffectAt*, 64> there{};
+double ResponseSurface::along(const EffectAt& effect) const {
+  return effects_[effect.effect].along(effect.amplitude());
+}
+
+ResponseSurface::Values ResponseSurface::values(const ModelPoint& point) const {
+  Values all;
+  struct There {
+    const EffectAt* effect = nullptr;
+    double along = 0;
+  };
+  std::array<There, 64> there{};
   for (const EffectAt& effect : point.effects)
-    if (acts_[effect.effect] && effect.amplitude() != 0) there[effect.effect] = &effect;
-  for (std::size_t t = 0; t < terms_.size(); ++t) {
+    if (acts_[effect.effect] && effect.amplitude() != 0) there[effect.effect] = {&effect, along(effect)};
+  const auto add = [&](std::size_t t) {
     const Term& term = terms_[t];
     double product = 1;
     if (term.effect >= 0) {
-      const EffectAt* effect = there[static_cast<std::size_t>(term.effect)];
-      if (effect == nullptr) continue;
-      product = term.hat != 0 ? hat(effect->amplitude(), term.hat) : power(effect->amplitude(), term.power);
-      if (product == 0) continue;
-      if (term.other > 0) product *= effect->at[term.other];
+      const There& effect = there[static_cast<std::size_t>(term.effect)];
+      if (effect.effect == nullptr) return;
+      product = term.hat != 0 ? hat(effect.along, term.hat) : power(effect.along, term.power);
+      if (product == 0) return;
+      if (term.other > 0) product *= effect.effect->at[term.other];
     }
     if (term.second >= 0) {
-      const EffectAt* effect = there[static_cast<std::size_t>(term.second)];
-      if (effect == nullptr) continue;
-      product *= effect->amplitude();
+      const There& effect = there[static_cast<std::size_t>(term.second)];
+      if (effect.effect == nullptr) return;
+      product *= effect.along;
     }
     for (std::size_t i = 0; i < term.base_power.size(); ++i)
       product *= power(point.base[static_cast<Eigen::Index>(i)], term.base_power[i]);
-    which.push_back(static_cast<Eigen::Index>(t));
-    value.push_back(product);
+    const auto here = static_cast<Eigen::Index>(t);
+    if (all.which.empty() || all.which.back() != here - 1)
+      all.stretches.push_back({here, std::ssize(all.which), 0});
+    ++all.stretches.back().count;
+    all.which.push_back(here);
+    all.value.push_back(product);
+  };
+  const std::size_t first = first_of_effect_.empty() ? first_of_pairs_ : first_of_effect_.front();
+  for (std::size_t t = 0; t < first; ++t) add(t);
+  for (std::size_t e = 0; e < first_of_effect_.size(); ++e) {
+    if (there[e].effect == nullptr) continue;
+    const std::size_t end = e + 1 < first_of_effect_.size() ? first_of_effect_[e + 1] : first_of_pairs_;
+    for (std::size_t t = first_of_effect_[e]; t < end; ++t) add(t);
   }
+  for (std::size_t t = first_of_pairs_; t < terms_.size(); ++t) add(t);
+  return all;
 }
 
 // The size of one group after the other is put to its best. With V the group's terms at the runs times their
 // priors and Q the inverse of the runs' covariance, a change d of the size's square changes that covariance
 // by d V V': its determinant by the product of 1 + d l over the eigenvalues l of V' Q V, and what the
 // likelihood has of y the same way.
-ResponseSurface::Fit ResponseSurface::fit(const Features& features, const Eigen::VectorXd& y) const {
+ResponseSurface::Fit ResponseSurface::fit(const Features& features, const Eigen::VectorXd& y,
+                                          bool whole) const {
   const Eigen::Index n = features.all.rows(), k = features.all.cols();
   Eigen::VectorXd size = Eigen::VectorXd::Ones(groups_);
   const auto factor = [&] {
@@ -172,8 +201,9 @@ ResponseSurface::Fit ResponseSurface::fit(const Features& features, const Eigen:
       if (terms_[static_cast<std::size_t>(t)].group < 0)
         covariance.selfadjointView<Eigen::Lower>().rankUpdate(features.all.col(t), kConstant * kConstant);
     for (Eigen::Index g = 0; g < groups_; ++g) {
-      const Eigen::MatrixXd& v = features.groups[static_cast<std::size_t>(g)].at_runs;
-      if (v.cols() > 0) covariance.selfadjointView<Eigen::Lower>().rankUpdate(v, size[g] * size[g]);
+      const Group& group = features.groups[static_cast<std::size_t>(g)];
+      if (group.terms.empty()) continue;
+      covariance(group.runs, group.runs) += size[g] * size[g] * group.at_runs * group.at_runs.transpose();
     }
     return Eigen::LLT<Eigen::MatrixXd>(covariance);
   };
@@ -185,12 +215,14 @@ ResponseSurface::Fit ResponseSurface::fit(const Features& features, const Eigen:
     Eigen::VectorXd qy = q * y;
     double misfit = y.dot(qy);
     for (Eigen::Index g = 0; g < groups_; ++g) {
-      const Eigen::MatrixXd& v = features.groups[static_cast<std::size_t>(g)].at_runs;
-      if (v.cols() == 0) continue;
-      Eigen::MatrixXd qv = q * v;
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(v.transpose() * qv);
+      const Group& group = features.groups[static_cast<std::size_t>(g)];
+      if (group.terms.empty()) continue;
+      const Eigen::MatrixXd& v = group.at_runs;
+      Eigen::MatrixXd qv = q(Eigen::all, group.runs) * v;
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(v.transpose() * qv(group.runs, Eigen::all));
       const Eigen::ArrayXd roots = eigen.eigenvalues().cwiseMax(0.0),
-                           along = (eigen.eigenvectors().transpose() * (v.transpose() * qy)).array();
+                           along =
+                               (eigen.eigenvectors().transpose() * (v.transpose() * qy(group.runs))).array();
       const auto shrunk = [&](double change) -> Eigen::ArrayXd {
         return change / (1 + change * roots).max(kTiny);
       };
@@ -229,40 +261,46 @@ ResponseSurface::Fit ResponseSurface::fit(const Features& features, const Eigen:
       qy.noalias() -= lost * along.matrix();
     }
   }
+  // With C the runs' covariance, F the terms there and P the coefficients' prior: mean P F' C^-1 y,
+  // covariance P - P F' C^-1 F P; what a run weighs in its own prediction is 1 - (C^-1)_ii. All over the
+  // scatter.
   const Eigen::LLT<Eigen::MatrixXd> last = factor();
-  Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(k, k),
-                  with_runs = Eigen::MatrixXd::Zero(n, k);  // covariances
-  for (Eigen::Index t = 0; t < k; ++t)
-    if (terms_[static_cast<std::size_t>(t)].group < 0) {
-      prior(t, t) = kConstant * kConstant;
-      with_runs.col(t) = prior(t, t) * features.all.col(t);
-    }
-  for (Eigen::Index g = 0; g < groups_; ++g) {
-    const Group& group = features.groups[static_cast<std::size_t>(g)];
-    const Eigen::VectorXd std = size[g] * group.prior;
-    prior(group.terms, group.terms).diagonal() = std.cwiseAbs2();
-    with_runs(Eigen::all, group.terms) = size[g] * group.at_runs * std.asDiagonal();
-  }
-  const Eigen::MatrixXd gain = last.solve(with_runs).transpose();
+  const Eigen::MatrixXd root = last.matrixL().solve(Eigen::MatrixXd::Identity(n, n));  // C^-1 = root' root
   Fit fit;
   fit.scatter = std::max(y.dot(last.solve(y)), least) / static_cast<double>(n);
-  fit.mean = gain * y;
-  fit.covariance = fit.scatter * (prior - gain * with_runs);
-  fit.size = size;
-  fit.residual = y - features.all * fit.mean;
-  const Eigen::VectorXd leverage = features.all.cwiseProduct(gain.transpose()).rowwise().sum();
-  fit.freedom = std::max(features.counts.dot(Eigen::VectorXd::Ones(n) - leverage), 1.0);
+  const Eigen::VectorXd own = root.colwise().squaredNorm().transpose();
+  fit.residual = last.solve(y);  // F times the mean is y - C^-1 y
   double sum = 0;
   for (Eigen::Index i = 0; i < n; ++i)
-    sum += fit.residual[i] * fit.residual[i] / (fit.scatter * std::max(1 - leverage[i], 1e-6));
+    sum += fit.residual[i] * fit.residual[i] / (fit.scatter * std::max(own[i], 1e-6));
   fit.leave_one_out = std::sqrt(sum / static_cast<double>(n));
+  fit.freedom = std::max(features.counts.dot(own), 1.0);
+  fit.size = size;
+  if (whole) {
+    Eigen::VectorXd prior(k);
+    for (Eigen::Index t = 0; t < k; ++t)
+      if (terms_[static_cast<std::size_t>(t)].group < 0) prior[t] = kConstant;
+    for (Eigen::Index g = 0; g < groups_; ++g) {
+      const Group& group = features.groups[static_cast<std::size_t>(g)];
+      prior(group.terms) = size[g] * group.prior;
+    }
+    const Eigen::MatrixXd with_runs =
+        root.triangularView<Eigen::Lower>() * (features.all * prior.cwiseAbs2().asDiagonal());
+    fit.mean = with_runs.transpose() * last.matrixL().solve(y);
+    fit.covariance = Eigen::MatrixXd::Zero(k, k);
+    fit.covariance.diagonal() = prior.cwiseAbs2();
+    fit.covariance.selfadjointView<Eigen::Lower>().rankUpdate(with_runs.transpose(), -1.0);
+    fit.covariance.triangularView<Eigen::StrictlyUpper>() = fit.covariance.transpose();
+    fit.covariance *= fit.scatter;
+  }
   fit.residual = fit.residual.cwiseProduct(features.counts);
   return fit;
 }
 
 ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& experiment,
                                  const std::vector<DesignRun>& runs) {
-  for (const CandidateEffect& effect : space.effects) acts_.push_back(effect.acts_in(experiment));
+  effects_ = space.effects;
+  for (const CandidateEffect& effect : effects_) acts_.push_back(effect.acts_in(experiment));
   if (acts_.size() > 64) throw std::invalid_argument("at most 64 effects");
   const auto n = static_cast<Eigen::Index>(runs.size());
   const auto plain =
@@ -275,12 +313,10 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
   const Eigen::Index p = runs.front().outputs.size(), k = static_cast<Eigen::Index>(terms_.size());
   Features features{Eigen::MatrixXd::Zero(n, k), {}, {}};
   Eigen::MatrixXd y(n, p);
-  std::vector<Eigen::Index> which;
-  std::vector<double> value;
   for (Eigen::Index i = 0; i < n; ++i) {
     const DesignRun& run = runs[static_cast<std::size_t>(i)];
-    values(run.at, which, value);
-    for (std::size_t t = 0; t < which.size(); ++t) features.all(i, which[t]) = value[t];
+    const Values here = values(run.at);
+    for (std::size_t t = 0; t < here.which.size(); ++t) features.all(i, here.which[t]) = here.value[t];
     y.row(i) = run.outputs.transpose();
   }
   const Whitening white(runs);
@@ -295,7 +331,9 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
         prior.push_back(term.prior);
       }
     group.prior = Eigen::Map<Eigen::VectorXd>(prior.data(), static_cast<Eigen::Index>(prior.size()));
-    group.at_runs = features.all(Eigen::all, group.terms) * group.prior.asDiagonal();
+    for (Eigen::Index i = 0; i < n; ++i)
+      if ((features.all(i, group.terms).array() != 0).any()) group.runs.push_back(i);
+    group.at_runs = features.all(group.runs, group.terms) * group.prior.asDiagonal();
     features.groups.push_back(std::move(group));
   }
   centre_ = y.colwise().mean();
@@ -307,7 +345,7 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
   Eigen::MatrixXd residual(n, p);
   Eigen::VectorXd freedom(p);
   for (Eigen::Index j = 0; j < p; ++j) {
-    const Fit alone = fit(features, off.col(j) / unit[j]);
+    const Fit alone = fit(features, off.col(j) / unit[j], false);
     residual.col(j) = alone.residual / std::sqrt(alone.freedom);
     freedom[j] = alone.freedom;
   }
@@ -328,7 +366,7 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
   Eigen::VectorXd variance(p);
   leave_one_out_.resize(p);
   for (Eigen::Index j = 0; j < p; ++j) {
-    fits_.push_back(fit(features, combinations.col(j)));
+    fits_.push_back(fit(features, combinations.col(j), true));
     variance[j] = fits_.back().residual.squaredNorm() / fits_.back().freedom;
     fits_.back().covariance *= variance[j] / fits_.back().scatter;
     fits_.back().scatter = variance[j];
@@ -347,7 +385,7 @@ double ResponseSurface::pair_covariance(const ModelPoint& first, const ModelPoin
         if (a.effect >= b.effect || !acts_[a.effect] || !acts_[b.effect]) continue;
         const std::pair<int, int> pair(static_cast<int>(a.effect), static_cast<int>(b.effect));
         if (std::find(known_pairs_.begin(), known_pairs_.end(), pair) == known_pairs_.end())
-          all[pair] = kTogether * a.amplitude() * b.amplitude();
+          all[pair] = kTogether * along(a) * along(b);
       }
     return all;
   };
@@ -360,20 +398,23 @@ double ResponseSurface::pair_covariance(const ModelPoint& first, const ModelPoin
 }
 
 SurfacePrediction ResponseSurface::at(const ModelPoint& point) const {
-  std::vector<Eigen::Index> which;
-  std::vector<double> value;
-  values(point, which, value);
+  const Values here = values(point);
+  const Eigen::Map<const Eigen::VectorXd> value(here.value.data(), std::ssize(here.value));
   const Eigen::Index p = outputs();
-  const std::size_t m = which.size();
   Eigen::VectorXd mean(p), variance(p);
   for (Eigen::Index j = 0; j < p; ++j) {
     const Fit& fit = fits_[static_cast<std::size_t>(j)];
     double sum = 0, square = 0;
-    for (std::size_t s = 0; s < m; ++s) {
-      sum += value[s] * fit.mean[which[s]];
-      double row = 0;
-      for (std::size_t t = 0; t < s; ++t) row += fit.covariance(which[t], which[s]) * value[t];
-      square += value[s] * (2 * row + fit.covariance(which[s], which[s]) * value[s]);
+    for (std::size_t s = 0; s < here.stretches.size(); ++s) {
+      const Values::Stretch& a = here.stretches[s];
+      const auto of_a = value.segment(a.at, a.count);
+      sum += of_a.dot(fit.mean.segment(a.term, a.count));
+      for (std::size_t t = 0; t <= s; ++t) {
+        const Values::Stretch& b = here.stretches[t];
+        const double part =
+            (fit.covariance.block(a.term, b.term, a.count, b.count) * value.segment(b.at, b.count)).dot(of_a);
+        square += t < s ? 2 * part : part;
+      }
     }
     mean[j] = sum;
     variance[j] = square + fit.scatter * pair_covariance(point, point, fit);
@@ -386,12 +427,10 @@ std::vector<Forecast> ResponseSurface::forecasts(const std::vector<DesignRun>& r
   const auto n = static_cast<Eigen::Index>(runs.size());
   Eigen::MatrixXd features = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(terms_.size()));
   Eigen::MatrixXd found(n, outputs());
-  std::vector<Eigen::Index> which;
-  std::vector<double> value;
   for (Eigen::Index i = 0; i < n; ++i) {
     const DesignRun& run = runs[static_cast<std::size_t>(i)];
-    values(run.at, which, value);
-    for (std::size_t t = 0; t < which.size(); ++t) features(i, which[t]) = value[t];
+    const Values here = values(run.at);
+    for (std::size_t t = 0; t < here.which.size(); ++t) features(i, here.which[t]) = here.value[t];
     found.row(i) = (to_combinations_ * (run.outputs - centre_)).transpose();
   }
   std::vector<Forecast> all;

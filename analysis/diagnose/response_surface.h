@@ -2,16 +2,16 @@
 // What an experiment gives over the parameters of the base model and the amplitudes of effects, learnt from
 // simulations whose numbers scatter from seed to seed.
 //
-// Each output is a polynomial of the coordinates with Gaussian priors on its coefficients: third order in the
-// base parameters, third order in an effect's amplitude, products of the amplitude with the base parameters,
-// with the effect's other parameters and with the amplitudes of other effects; and hats along the amplitude,
-// for effects that have done all they can before the end of their range. An effect that is absent
-// changes nothing. How large the coefficients of the base and of each effect are a priori, and how large the
-// scatter is, are those of the largest marginal likelihood. Readings of one pile share nearly all of their
-// scatter. Outputs of one run are correlated: the
-// polynomials are those of combinations of the outputs whose scatter is not.
-// Source: Rasmussen & Williams, Gaussian Processes for Machine Learning (2006), 2.1 and 5.4; Higdon et al.,
-// J. Am. Stat. Assoc. 103 (2008), for several outputs.
+// Each output is a sum of terms with Gaussian priors on their coefficients: a polynomial of third order in
+// the base parameters; of each effect one of third order in how far along its amplitude is, products of that
+// with the base parameters, with the effect's other parameters and with other effects; and hats along the
+// amplitude, each alone and times the base parameters and their squares, because an effect may do most of
+// what it can at the bottom of its range and something else further up. An effect that is absent changes
+// nothing. How large the coefficients of the base and of each effect are a priori, and how large the scatter
+// is, are those of the largest marginal likelihood. Readings of one pile share nearly all of their scatter.
+// Outputs of one run are correlated: the polynomials are those of combinations of the outputs whose scatter
+// is not. Source: Rasmussen & Williams, Gaussian Processes for Machine Learning (2006), 2.1 and 5.4; Higdon
+// et al., J. Am. Stat. Assoc. 103 (2008), for several outputs.
 #include <Eigen/Dense>
 #include <string>
 #include <vector>
@@ -55,18 +55,27 @@ class ResponseSurface {
   static int least_base_runs(std::size_t base_parameters);
 
  private:
-  struct Term {                   // a monomial
+  struct Term {                   // a product
     int group;                    // whose size its prior has: 0: base; effects; their hats; pairs; -1: none
     double prior;                 // standard deviation over the size
     std::vector<int> base_power;  // by base axis
-    int effect = -1, power = 0;   // of the amplitude
+    int effect = -1, power = 0;   // of how far along its amplitude is
     int other = 0;                // a further parameter of the effect, from 1; 0: none
     int second = -1;              // the other effect of a product
-    int hat = 0;                  // not 0: in place of a power, the hat at this knot of the amplitude
+    int hat = 0;                  // not 0: in place of a power, the hat at this knot
   };
   void make_terms(const ModelSpace& space, const std::vector<DesignRun>& runs);
+  double along(const EffectAt& effect) const;  // see CandidateEffect::along
   // The terms that do not vanish at a point, and their values.
-  void values(const ModelPoint& point, std::vector<Eigen::Index>& which, std::vector<double>& value) const;
+  struct Values {
+    std::vector<Eigen::Index> which;
+    std::vector<double> value;
+    struct Stretch {  // of terms that follow one another
+      Eigen::Index term, at, count;
+    };
+    std::vector<Stretch> stretches;
+  };
+  Values values(const ModelPoint& point) const;
 
   struct Fit {
     Eigen::VectorXd mean;        // of the coefficients
@@ -79,8 +88,9 @@ class ResponseSurface {
   };
   struct Group {  // of terms
     std::vector<Eigen::Index> terms;
-    Eigen::VectorXd prior;    // of them
-    Eigen::MatrixXd at_runs;  // the terms at the runs, times their priors
+    Eigen::VectorXd prior;           // of them
+    std::vector<Eigen::Index> runs;  // at which they do not vanish
+    Eigen::MatrixXd at_runs;         // the terms there, times their priors
   };
   struct Features {
     Eigen::MatrixXd all;  // a row a run, a column a term
@@ -88,13 +98,17 @@ class ResponseSurface {
         counts;  // 1 of the first reading of a pile, whose scatter is that of a run; 0 of further ones
     std::vector<Group> groups;
   };
-  Fit fit(const Features& features, const Eigen::VectorXd& y) const;
+  // `whole`: with the coefficients; else how large their sizes and the scatter are, and the residuals.
+  Fit fit(const Features& features, const Eigen::VectorXd& y, bool whole) const;
   double pair_covariance(const ModelPoint& first, const ModelPoint& second, const Fit& fit) const;
 
-  std::vector<bool> acts_;                        // by effect of the space
+  std::vector<bool> acts_;  // by effect of the space
+  std::vector<CandidateEffect> effects_;
   std::vector<std::pair<int, int>> known_pairs_;  // of effects that were simulated together
   int groups_ = 1;
-  std::vector<Term> terms_;
+  std::vector<Term> terms_;  // of the base, of each effect, of pairs
+  std::vector<std::size_t> first_of_effect_;
+  std::size_t first_of_pairs_ = 0;
   std::vector<Fit> fits_;            // by combination
   Eigen::VectorXd centre_;           // of outputs
   Eigen::MatrixXd to_outputs_;       // outputs - centre = to_outputs * combinations

@@ -74,12 +74,16 @@ void read_piles(const ModelSpace& space, const SimulationCounts& counts,
   }
 }
 
-bool moved(const ModelPoint& a, const ModelPoint& b) {
+bool moved(const ModelSpace& space, const ModelPoint& a, const ModelPoint& b) {
   if (a.effects.size() != b.effects.size()) return true;
   double most = (a.base - b.base).cwiseAbs().maxCoeff();
   for (std::size_t k = 0; k < a.effects.size(); ++k) {
-    if (a.effects[k].effect != b.effects[k].effect) return true;
-    most = std::max(most, (a.effects[k].at - b.effects[k].at).cwiseAbs().maxCoeff());
+    const EffectAt &one = a.effects[k], &other = b.effects[k];
+    if (one.effect != other.effect) return true;
+    const CandidateEffect& effect = space.effects[one.effect];
+    most = std::max(most, std::abs(effect.along(one.amplitude()) - effect.along(other.amplitude())));
+    if (one.at.size() > 1)
+      most = std::max(most, (one.at - other.at).tail(one.at.size() - 1).cwiseAbs().maxCoeff());
   }
   return most > kMoved;
 }
@@ -461,7 +465,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   const auto is_shown = [&](const Judgement& j) {
     if (not_to_be_shown.contains(j.hypothesis.effects)) return true;
     const auto there = shown.find(j.hypothesis.effects);
-    return there != shown.end() && !moved(there->second.at, j.best);
+    return there != shown.end() && !moved(space_, there->second.at, j.best);
   };
   // Whether there was anything to simulate.
   const auto show = [&](const Judgement& j) {
@@ -483,7 +487,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   // Simulations at the fitted values do not give the data, whatever surfaces say.
   const auto contradicts = [&](const Judgement& j) {
     const auto there = shown.find(j.hypothesis.effects);
-    return there != shown.end() && !moved(there->second.at, j.best) && gap_shown(j).p <= kFitsAbove;
+    return there != shown.end() && !moved(space_, there->second.at, j.best) && gap_shown(j).p <= kFitsAbove;
   };
   const auto contradicted = [&] {
     Contradicted all;

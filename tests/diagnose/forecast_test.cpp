@@ -39,7 +39,7 @@ TEST(Widening, IsSmallWhereTheSurfaceIsOfTheKindThatItLearns) {
   }
 }
 
-// An effect does all it can before the first amplitude that was simulated: nothing in those runs says so.
+// An effect has a narrow peak between two amplitudes that were simulated: nothing in those runs says so.
 TEST(Widening, IsLargeWhereTheSurfaceIsSureAndWrong) {
   ModelSpace space;
   space.base = {{"material.mu", 0, -1, 1}};
@@ -48,15 +48,16 @@ TEST(Widening, IsLargeWhereTheSurfaceIsSureAndWrong) {
   const auto run = [&](double base, double x) {
     ModelPoint at{Eigen::VectorXd::Constant(1, base), {}};
     if (x != 0) at.effects.push_back({0, Eigen::VectorXd::Constant(1, x)});
-    const double y = 2 * base + 12 * std::min(x / 0.05, 1.0) + random.uniform(-1, 1);
+    const double y =
+        2 * base + 4 * x + 12 * std::exp(-std::pow((x - 0.55) / 0.02, 2)) + random.uniform(-1, 1);
     return DesignRun{at, Eigen::VectorXd::Constant(1, y)};
   };
   std::vector<DesignRun> learnt, near, far;
   for (int k = 0; k < 20; ++k) learnt.push_back(run(random.uniform(-1, 1), 0));
   for (int k = 1; k <= 10; ++k) learnt.push_back(run(random.uniform(-1, 1), k / 10.0));
   for (int k = 0; k < 12; ++k) {
-    near.push_back(run(random.uniform(-1, 1), 0.04));
-    far.push_back(run(random.uniform(-1, 1), 0.5));
+    near.push_back(run(random.uniform(-1, 1), 0.55));
+    far.push_back(run(random.uniform(-1, 1), 0.3));
   }
   const ResponseSurface surface(space, "one", learnt);
   EXPECT_GT(widening(surface.forecasts(near)), 1.5 * widening(surface.forecasts(far)));
