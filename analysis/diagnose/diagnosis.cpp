@@ -38,9 +38,10 @@ Gap gap_of(double chi2, int numbers, int fitted, double scatter_freedom) {
   return {chi2, freedom, p_of(chi2, freedom, scatter_freedom)};
 }
 
-// Chi-square and logarithm of the density, Student's t of several dimensions or normal.
+// Chi-square and logarithm of the density, Student's t of several dimensions or normal; log_shape: without
+// the volume of the covariance, 0 where the values are those expected.
 struct Density {
-  double chi2, log_density;
+  double chi2, log_shape, log_density;
 };
 Density density(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance,
                 const Eigen::VectorXd& scale, double scatter_freedom) {
@@ -53,7 +54,7 @@ Density density(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covari
   const double log_shape = std::isinf(scatter_freedom)
                                ? -0.5 * chi2
                                : -0.5 * (scatter_freedom + n) * std::log1p(chi2 / scatter_freedom);
-  return {chi2, log_shape - factor.matrixLLT().diagonal().array().log().sum()};
+  return {chi2, log_shape, log_shape - factor.matrixLLT().diagonal().array().log().sum()};
 }
 
 // Base coordinates, then those of each effect's parameters.
@@ -150,28 +151,44 @@ Judgement judge(const ModelSpace& space, const Likelihood& likelihood, const Hyp
   return j;
 }
 
-// Change of the values by the effects at a point, in standard uncertainties, without what the base parameters
-// can make up for (to first order).
-Eigen::VectorXd signature(const ModelSpace& space, const LearntModel& model,
-                          const Eigen::MatrixXd& covariance, const ModelPoint& point) {
-  const SurfacePrediction with = model.at(point);
-  const Eigen::VectorXd without = model.at({point.base, {}}).mean;
-  const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
-  const Eigen::LLT<Eigen::MatrixXd> factor(
-      Eigen::MatrixXd(scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal()));
-  const auto whitened = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
-    return factor.matrixL().solve(x.cwiseQuotient(scale));
-  };
-  const auto p = static_cast<Eigen::Index>(space.base.size());
-  Eigen::MatrixXd slopes(with.mean.size(), p);
-  for (Eigen::Index k = 0; k < p; ++k) {
-    ModelPoint up{point.base, {}}, down = up;
-    up.base[k] += kStep;
-    down.base[k] -= kStep;
-    slopes.col(k) = whitened((model.at(up).mean - model.at(down).mean) / (2 * kStep));
+// Changes of the values in standard uncertainties, and without what the base parameters about a point can
+// make up for (to first order).
+class Compensation {
+ public:
+  Compensation(const LearntModel& model, const Eigen::MatrixXd& covariance, const Eigen::VectorXd& base)
+      : scale_(covariance.diagonal().cwiseSqrt()),
+        factor_(Eigen::MatrixXd(scale_.cwiseInverse().asDiagonal() * covariance *
+                                scale_.cwiseInverse().asDiagonal())),
+        slopes_(covariance.rows(), base.size()) {
+    for (Eigen::Index k = 0; k < base.size(); ++k) {
+      ModelPoint up{base, {}}, down = up;
+      up.base[k] += kStep;
+      down.base[k] -= kStep;
+      slopes_.col(k) = whitened((model.at(up).mean - model.at(down).mean) / (2 * kStep));
+    }
+    made_up_for_.compute(slopes_);
   }
-  const Eigen::VectorXd change = whitened(with.mean - without);
-  return change - slopes * slopes.colPivHouseholderQr().solve(change);
+  /// Columns of changes.
+  Eigen::MatrixXd left(const Eigen::MatrixXd& changes) const {
+    const Eigen::MatrixXd white = whitened(changes);
+    return white - slopes_ * made_up_for_.solve(white);
+  }
+
+ private:
+  Eigen::MatrixXd whitened(const Eigen::MatrixXd& x) const {
+    return factor_.matrixL().solve(scale_.cwiseInverse().asDiagonal() * x);
+  }
+  Eigen::VectorXd scale_;
+  Eigen::LLT<Eigen::MatrixXd> factor_;
+  Eigen::MatrixXd slopes_;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> made_up_for_;
+};
+
+// What the effects do at a point, as the surfaces have it.
+Eigen::VectorXd signature(const LearntModel& model, const Eigen::MatrixXd& covariance,
+                          const ModelPoint& point) {
+  return Compensation(model, covariance, point.base)
+      .left(model.at(point).mean - model.at({point.base, {}}).mean);
 }
 
 double rms(const Eigen::VectorXd& x) {
@@ -292,19 +309,19 @@ std::vector<const ResponseSurface*> LearntModel::surfaces() const {
   return all;
 }
 
-std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Judgement& judgement, int count) {
-  const Evidence& evidence = judgement.evidence;
-  const ParameterBox box = box_of(space, judgement.hypothesis);
-  const Eigen::VectorXd mean = evidence.mean();
+std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Diagnosis& d, const LearntModel& model,
+                                       const Hypothesis& hypothesis, int count) {
+  const Likelihood likelihood(space, model, d.measured, d.covariance, d.freedom,
+                              everything(static_cast<Eigen::Index>(d.measured.values.size())));
+  const Evidence evidence = integrate(
+      [&](const Eigen::VectorXd& x) { return likelihood.at(hypothesis, x).log_shape / (kWider * kWider); },
+      box_of(space, hypothesis), kSeed);
   std::vector<ModelPoint> points;
   double sum = 0;
   for (Eigen::Index s = 0; s < evidence.samples.rows(); ++s) {  // systematic sampling by weight
     sum += evidence.weights[s];
-    while (static_cast<int>(points.size()) < count &&
-           sum * count > static_cast<double>(points.size()) + 0.5) {
-      const Eigen::VectorXd x = mean + kWider * (evidence.samples.row(s).transpose() - mean);
-      points.push_back(point_of(space, judgement.hypothesis, x.cwiseMax(box.low).cwiseMin(box.high)));
-    }
+    while (static_cast<int>(points.size()) < count && sum * count > static_cast<double>(points.size()) + 0.5)
+      points.push_back(point_of(space, hypothesis, evidence.samples.row(s)));
   }
   return points;
 }
@@ -358,14 +375,14 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
   for (const Judgement& j : d.judgements) sum += std::exp(weight(j) - most);
   for (Judgement& j : d.judgements) {
     j.probability = std::exp(weight(j) - most) / sum;
-    j.signature = rms(signature(space, model, d.covariance, j.best));
+    j.signature = rms(signature(model, d.covariance, j.best));
     if (j.hypothesis.effects.empty() && !j.hypothesis.unknown) d.calibration.probability = j.probability;
   }
   sort_by_probability(d.judgements);
 
   std::vector<Eigen::VectorXd> signatures;
   for (const Judgement& one : ones) {
-    Eigen::VectorXd s = signature(space, model, d.covariance, {d.calibration.best.base, one.best.effects});
+    Eigen::VectorXd s = signature(model, d.covariance, {d.calibration.best.base, one.best.effects});
     signatures.push_back(s.norm() > 0 ? Eigen::VectorXd(s.normalized()) : s);
   }
   const auto n = static_cast<Eigen::Index>(count);
@@ -454,9 +471,12 @@ Gap simulated_gap(const Diagnosis& d, const LearntModel& model, const Eigen::Vec
                 static_cast<int>(mean.size()), 0, d.freedom);
 }
 
-double detectability(const ModelSpace& space, const LearntModel& model, const Eigen::MatrixXd& covariance,
-                     const ModelPoint& point) {
-  return rms(signature(space, model, covariance, point));
+double detectability(const LearntModel& model, const Eigen::MatrixXd& covariance, const Eigen::VectorXd& base,
+                     const Eigen::VectorXd& change, const Eigen::MatrixXd& covariance_of_change) {
+  const Compensation compensation(model, covariance, base);
+  const double unknown = compensation.left(compensation.left(covariance_of_change).transpose()).trace();
+  const double square = compensation.left(change).squaredNorm() - unknown;
+  return std::sqrt(std::max(square, 0.0) / static_cast<double>(change.size()));
 }
 
 }  // namespace scree

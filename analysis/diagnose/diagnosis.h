@@ -60,8 +60,9 @@ struct Judgement {
   };
   std::vector<Interval> base;                  ///< of each base parameter, in its unit: 5, 50 and 95 %
   std::vector<std::vector<Interval>> effects;  ///< of each effect's parameters
-  double signature =
-      0;  ///< root mean square change by the effects, in standard uncertainties, after compensation
+  /// Root mean square change by the effects as the surfaces have it, in standard uncertainties, after what
+  /// the base parameters make up for.
+  double signature = 0;
 };
 
 /// How well a hypothesis foretells what it was not fitted to: parts of the data left out in turn.
@@ -118,10 +119,6 @@ class LearntModel {
   std::vector<double> widening_;
 };
 
-/// Points drawn from what the data leave open of a hypothesis, spread wider than it is by a half: where it is
-/// worth learning more. They depend on the judgement alone.
-std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Judgement& judgement, int count);
-
 /// Effects of hypotheses that full simulations have contradicted, however well surfaces fit; empty: those of
 /// the base model alone.
 using Contradicted = std::set<std::vector<std::size_t>>;
@@ -130,6 +127,13 @@ using Contradicted = std::set<std::vector<std::size_t>>;
 /// contradicted.
 Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model,
                    const Contradicted& contradicted = {});
+
+/// Points drawn from what the data leave open of a hypothesis, spread wider than it is by a half: where it is
+/// worth learning more. Where the surfaces know little the data may fit, and all such places are open: they
+/// are as likely as those where the surfaces know that it fits (the density counts without its covariance's
+/// volume), else what was simulated first would draw all that follows to itself.
+std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Diagnosis& diagnosis,
+                                       const LearntModel& model, const Hypothesis& hypothesis, int count);
 
 /// Full simulations at a judgement's best parameters leave `gap` and contradict it, or none could be done
 /// (nothing): its probability goes to the others in proportion. Says anew what is named; the order of
@@ -146,9 +150,10 @@ HeldOut held_out(const ModelSpace& space, const Diagnosis& diagnosis, const Lear
 Gap simulated_gap(const Diagnosis& diagnosis, const LearntModel& model, const Eigen::VectorXd& mean,
                   int runs);
 
-/// Root mean square change of the measured numbers by the effects at a point, in standard uncertainties, as
-/// far as other base parameters cannot make up for it.
-double detectability(const ModelSpace& space, const LearntModel& model, const Eigen::MatrixXd& covariance,
-                     const ModelPoint& point);
+/// Root mean square of a change of the measured numbers that simulations gave, about base parameters `base`,
+/// in standard uncertainties, as far as other base parameters cannot make up for it (to first order). What
+/// the covariance of the change adds to the square is taken off.
+double detectability(const LearntModel& model, const Eigen::MatrixXd& covariance, const Eigen::VectorXd& base,
+                     const Eigen::VectorXd& change, const Eigen::MatrixXd& covariance_of_change);
 
 }  // namespace scree

@@ -181,24 +181,26 @@ ExperimentRuns runs_of(const DiagnosisModel& model, const ModelSpace& space,
   return result;
 }
 
+std::optional<Eigen::VectorXd> measured_in(const std::optional<StoredResult>& result,
+                                           const std::vector<std::string>& outputs) {
+  if (!result || result->state != RunState::done || !result->at_rest()) return {};
+  Eigen::VectorXd values(static_cast<Eigen::Index>(outputs.size()));
+  for (std::size_t c = 0; c < outputs.size(); ++c) {
+    const auto found = result->outputs.find(outputs[c]);
+    if (found == result->outputs.end() || !std::isfinite(found->second)) return {};
+    values[static_cast<Eigen::Index>(c)] = found->second;
+  }
+  return values;
+}
+
 GatheredRuns gather(const ExperimentRuns& planned, const std::vector<std::optional<StoredResult>>& results,
                     const std::vector<std::string>& outputs) {
   GatheredRuns gathered;
-  for (std::size_t k = 0; k < planned.runs.size(); ++k) {
-    const auto& result = results[k];
-    DesignRun run{planned.runs[k].at, Eigen::VectorXd(static_cast<Eigen::Index>(outputs.size())),
-                  planned.requests[k].pile};
-    bool good = result && result->state == RunState::done && result->at_rest();
-    for (std::size_t c = 0; good && c < outputs.size(); ++c) {
-      const auto found = result->outputs.find(outputs[c]);
-      good = found != result->outputs.end() && std::isfinite(found->second);
-      if (good) run.outputs[static_cast<Eigen::Index>(c)] = found->second;
-    }
-    if (good)
-      gathered.runs.push_back(std::move(run));
+  for (std::size_t k = 0; k < planned.runs.size(); ++k)
+    if (const auto values = measured_in(results[k], outputs))
+      gathered.runs.push_back({planned.runs[k].at, *values, planned.requests[k].pile});
     else
       ++gathered.left_out;
-  }
   return gathered;
 }
 
@@ -349,10 +351,10 @@ SimulatedModel DiagnosisSession::simulate(const ModelPoint& point, const RunThro
   return simulated;
 }
 
-void DiagnosisSession::explore(const Judgement& judgement, const RunThrough& run, DiagnosisOutcome& outcome) {
+void DiagnosisSession::explore(const std::vector<ModelPoint>& points, const RunThrough& run,
+                               DiagnosisOutcome& outcome) {
   std::vector<PlannedRun> planned;
-  for (const ModelPoint& point : where_to_learn(space_, judgement, model_.simulations.effect))
-    planned.push_back({point, kCheckSeeds + ++checks_});
+  for (const ModelPoint& point : points) planned.push_back({point, kCheckSeeds + ++checks_});
   learn_from(in_every_experiment(planned), run, outcome);
 }
 
@@ -515,7 +517,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
         if (!show(*j)) continue;
         fresh = true;
         if (j == worth.front() && round < kExplored && shown.contains(j->hypothesis.effects))
-          explore(*j, run, outcome);
+          explore(where_to_learn(space_, d, model, j->hypothesis, model_.simulations.effect), run, outcome);
       }
     }
     if (!fresh) {

@@ -44,6 +44,10 @@ ExperimentRuns runs_of(const DiagnosisModel& model, const ModelSpace& space,
                        const Dataset::Experiment& experiment, const std::vector<PlannedRun>& planned,
                        const std::filesystem::path& asset_dir);
 
+/// What a run gave of the outputs; nothing if it failed, did not come to rest or misses one of them.
+std::optional<Eigen::VectorXd> measured_in(const std::optional<StoredResult>& result,
+                                           const std::vector<std::string>& outputs);
+
 /// What such runs gave, by the names of outputs; runs that failed, did not come to rest or miss one of them
 /// are left out.
 struct GatheredRuns {
@@ -81,7 +85,7 @@ class DiagnosisSession {
   void learn_from(const std::vector<ExperimentRuns>& runs, const RunThrough& run, DiagnosisOutcome& outcome);
   SimulatedModel simulate(const ModelPoint& point, const RunThrough& run, DiagnosisOutcome& outcome);
   // Learns from simulations spread over what the data leave open of a hypothesis.
-  void explore(const Judgement& judgement, const RunThrough& run, DiagnosisOutcome& outcome);
+  void explore(const std::vector<ModelPoint>& points, const RunThrough& run, DiagnosisOutcome& outcome);
   LearntModel learn() const;
   // How the model foretold the simulations after the first so many, by experiment.
   void compare(const LearntModel& model, const std::vector<std::size_t>& known);

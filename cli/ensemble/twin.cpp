@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 
 #include "sim/material/random.h"
 
@@ -13,9 +15,12 @@ namespace scree {
 namespace {
 
 constexpr double kInnerBase = 0.6, kInnerOther = 0.8;  // of the ranges, from which a truth is drawn
-constexpr int kSteps = 60;                             // along an amplitude's range
-constexpr int kMostTries = 2;                          // times the repeats: simulations of a truth
-constexpr std::uint64_t kTwinSeeds = 1'000'000, kSeedsOfOneTwin = 1000;
+constexpr int kLeastPairs = 12;          // simulations with and without an effect that say how strong it is
+constexpr int kMostAmplitudes = 8;       // tried
+constexpr double kStrengthWithin = 0.1;  // of what is asked for
+constexpr double kLeastStrength = 0.1;   // against logarithms of 0
+constexpr int kMostTries = 2;            // times the repeats: simulations of a truth
+constexpr std::uint64_t kTwinSeeds = 1'000'000, kStrengthSeeds = 1'500'000'000, kSeedsOfOneTwin = 1000;
 
 std::vector<Dataset::Experiment> experiments_of(const DiagnosisModel& model) {
   std::vector<Dataset::Experiment> all;
@@ -43,6 +48,43 @@ std::vector<std::vector<std::optional<StoredResult>>> done(const std::vector<Exp
   return split;
 }
 
+// An amplitude, and how strong simulations show the effect to be there.
+struct Strength {
+  double amplitude, strength;
+};
+
+// Looks for the amplitude between 0 and `end` at which the effect is so strong, by lines between logarithms;
+// nothing, and how strong it is at the end, if it is too weak.
+std::optional<Strength> amplitude_of(double asked, double end,
+                                     const std::function<double(double)>& strength_at, double& strongest) {
+  std::optional<Strength> best, below, above;
+  const auto off = [&](const Strength& s) {
+    return std::abs(std::log(std::max(s.strength, kLeastStrength) / asked));
+  };
+  double amplitude = end / 4;
+  for (int k = 0; k < kMostAmplitudes; ++k) {
+    const Strength here{amplitude, strength_at(amplitude)};
+    strongest = std::max(strongest, here.strength);
+    if (!best || off(here) < off(*best)) best = here;
+    if (off(here) < kStrengthWithin) break;
+    (here.strength < asked ? below : above) = here;
+    const double share = asked / std::max(here.strength, kLeastStrength);
+    if (!above) {
+      if (amplitude == end) return {};
+      amplitude *= std::clamp(share, 1.3, 4.0);
+      if (std::abs(amplitude) > std::abs(end)) amplitude = end;
+    } else if (!below) {
+      amplitude *= std::clamp(share, 0.25, 0.8);
+    } else {
+      const double low = std::log(std::max(below->strength, kLeastStrength)),
+                   high = std::log(above->strength),
+                   part = std::clamp((std::log(asked) - low) / (high - low), 0.1, 0.9);
+      amplitude = below->amplitude * std::pow(above->amplitude / below->amplitude, part);
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::filesystem::path& asset_dir,
@@ -51,11 +93,14 @@ Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::fil
     throw std::runtime_error(model.name + ": a twin needs the model's experiments and their observables");
   const std::vector<Dataset::Experiment> experiments = experiments_of(model);
   const ModelSpace space = space_of(model, experiments, {});
+  // The base model: its scatter, and what its parameters make up for.
+  std::vector<PlannedRun> plain = design_of(space, model.simulations);
+  std::erase_if(plain, [](const PlannedRun& run) { return !run.at.effects.empty(); });
   std::vector<std::string> names;
   std::vector<ExperimentRuns> planned;
   for (const Dataset::Experiment& each : experiments) {
     names.push_back(each.name);
-    planned.push_back(runs_of(model, space, each, design_of(space, model.simulations), asset_dir));
+    planned.push_back(runs_of(model, space, each, plain, asset_dir));
   }
   DesignRuns learnt;
   const auto results = done(planned, design);
@@ -81,10 +126,56 @@ Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::fil
     first += block.rows();
   }
 
+  const auto runs_at = [&](std::size_t e, ModelPoint at, std::uint64_t seeds, int begin, int count) {
+    if (std::none_of(at.effects.begin(), at.effects.end(),
+                     [&](const EffectAt& there) { return space.effects[there.effect].acts_in(names[e]); }))
+      at.effects.clear();
+    std::vector<PlannedRun> each;
+    for (int k = begin; k < begin + count; ++k)
+      each.push_back({at, seeds + spec.seed * kSeedsOfOneTwin + static_cast<std::uint64_t>(k)});
+    Dataset::Experiment made = experiments[e];
+    if (!spec.engine.empty()) made.overrides.push_back("engine=" + spec.engine);
+    return runs_of(model, space, made, each, asset_dir);
+  };
+
   Twin twin;
   Random random(spec.seed, 0, RandomPurpose::measurement);
   twin.truth.at.base.resize(static_cast<Eigen::Index>(space.base.size()));
   for (double& x : twin.truth.at.base) x = kInnerBase * random.uniform(-1, 1);
+  // With and without the effect about the truth's base parameters, of the same seeds.
+  const auto strength_of = [&](const EffectAt& there) {
+    const int pairs = std::max(spec.repeats, kLeastPairs);
+    std::vector<ExperimentRuns> both;
+    for (std::size_t e = 0; e < experiments.size(); ++e)
+      for (const auto& effects : {std::vector<EffectAt>{there}, std::vector<EffectAt>{}})
+        both.push_back(runs_at(e, {twin.truth.at.base, effects}, kStrengthSeeds, 0,
+                               space.effects[there.effect].acts_in(names[e]) ? pairs : 0));
+    const auto ended = done(both, hidden);
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(n);
+    Eigen::MatrixXd unsure = Eigen::MatrixXd::Zero(n, n);
+    Eigen::Index begin = 0;
+    for (std::size_t e = 0; e < experiments.size(); ++e) {
+      const std::vector<std::string>& outputs = model.experiments[e].observables;
+      const auto width = static_cast<Eigen::Index>(outputs.size());
+      const auto &with = ended[2 * e], &without = ended[2 * e + 1];
+      std::vector<Eigen::VectorXd> changes;
+      for (std::size_t k = 0; k < with.size(); ++k)
+        if (const auto one = measured_in(with[k], outputs), other = measured_in(without[k], outputs);
+            one && other)
+          changes.push_back(*one - *other);
+      if (!with.empty() && std::ssize(changes) < kLeastPairs / 2)
+        throw std::runtime_error(fmt::format("{}: {} of {} simulations of the truth gave no measurement",
+                                             names[e], with.size() - changes.size(), with.size()));
+      const double count = static_cast<double>(changes.size());
+      for (const Eigen::VectorXd& each : changes) change.segment(begin, width) += each / count;
+      for (const Eigen::VectorXd& each : changes) {
+        const Eigen::VectorXd off = each - change.segment(begin, width);
+        unsure.block(begin, begin, width, width) += off * off.transpose() / (count * (count - 1));
+      }
+      begin += width;
+    }
+    return detectability(surface, covariance, twin.truth.at.base, change, unsure);
+  };
   for (const std::string& name : spec.effects) {
     const std::size_t e = space.find(name);
     if (e == space.effects.size())
@@ -98,50 +189,28 @@ Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::fil
     for (Eigen::Index k = 1; k < there.at.size(); ++k) there.at[k] = kInnerOther * random.uniform(-1, 1);
     const auto strength = [&](double amplitude) {
       there.at[0] = amplitude;
-      return detectability(space, surface, covariance, {twin.truth.at.base, {there}});
+      return strength_of(there);
     };
-    // The first crossing from 0; the other direction if this one is too weak.
-    double found = 0, strongest = 0;
-    for (int way = 0; way < 2 && found == 0; ++way, sign = -sign) {
-      const double end = sign < 0 ? ends[0] : ends[1];
-      if (end * sign <= 0) continue;
-      for (int k = 1; k <= kSteps && found == 0; ++k) {
-        const double here = end * k / kSteps;
-        strongest = std::max(strongest, strength(here));
-        if (strongest < spec.strength) continue;
-        double low = end * (k - 1) / kSteps, high = here;
-        for (int b = 0; b < 40; ++b) {
-          const double middle = 0.5 * (low + high);
-          (strength(middle) < spec.strength ? low : high) = middle;
-        }
-        found = high;
-      }
-    }
-    if (found == 0)
+    // The other direction if this one is too weak.
+    std::optional<Strength> found;
+    double strongest = 0;
+    for (int way = 0; way < 2 && !found; ++way, sign = -sign)
+      if (const double end = sign < 0 ? ends[0] : ends[1]; end * sign > 0)
+        found = amplitude_of(spec.strength, end, strength, strongest);
+    if (!found)
       throw TooWeak(
           fmt::format("{} shifts these observables by {:.2g} standard uncertainties at most within its prior "
                       "range, not by "
                       "{:g}; more --repeats, or less --noise, make it stronger",
                       name, strongest, spec.strength));
-    twin.truth.detectability.push_back(strength(found));
+    there.at[0] = found->amplitude;
+    twin.truth.detectability.push_back(found->strength);
     twin.truth.at.effects.push_back(there);
   }
   std::sort(twin.truth.at.effects.begin(), twin.truth.at.effects.end(),
             [](const auto& a, const auto& b) { return a.effect < b.effect; });
 
   // A simulation that gives no measurement (a heap without a flank) is repeated with another seed.
-  const auto truth_of = [&](std::size_t e, int begin, int count) {
-    ModelPoint at = twin.truth.at;
-    if (std::none_of(at.effects.begin(), at.effects.end(),
-                     [&](const EffectAt& there) { return space.effects[there.effect].acts_in(names[e]); }))
-      at.effects.clear();
-    std::vector<PlannedRun> planned_truth;
-    for (int k = begin; k < begin + count; ++k)
-      planned_truth.push_back({at, kTwinSeeds + spec.seed * kSeedsOfOneTwin + static_cast<std::uint64_t>(k)});
-    Dataset::Experiment made = experiments[e];
-    if (!spec.engine.empty()) made.overrides.push_back("engine=" + spec.engine);
-    return runs_of(model, space, made, planned_truth, asset_dir);
-  };
   std::vector<std::vector<DesignRun>> measured(experiments.size());
   std::vector<int> tried(experiments.size(), 0);
   while (true) {
@@ -154,7 +223,7 @@ Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::fil
         throw std::runtime_error(fmt::format("{}: {} of {} simulations of the truth gave no measurement",
                                              names[e], tried[e] - static_cast<int>(measured[e].size()),
                                              tried[e]));
-      runs.push_back(truth_of(e, tried[e], lack));
+      runs.push_back(runs_at(e, twin.truth.at, kTwinSeeds, tried[e], lack));
       which.push_back(e);
       tried[e] += lack;
     }

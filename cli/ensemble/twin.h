@@ -35,12 +35,13 @@ struct TooWeak : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Draws base parameters from the inner part of their ranges and a direction for every effect, takes the
+/// Draws base parameters from the inner part of their ranges and a direction for every effect, looks for the
 /// amplitude at which the effect shifts the model's observables by `strength` standard uncertainties (root
-/// mean square, after the base parameters have made up for what they can), simulates the model's experiments
+/// mean square, after the base parameters have made up for what they can; by simulations with and without the
+/// effect, within some tenth of it), simulates the model's experiments
 /// with seeds that no diagnosis uses (again with another where one gives no measurement, up to twice as many
-/// as repeats), and adds errors of measurement. `design` does the simulations that tell
-/// how strong an effect is, `hidden` those of the truth. Throws TooWeak; std::runtime_error; what these
+/// as repeats), and adds errors of measurement. `design` does simulations of the base model, `hidden` those
+/// about the truth. Throws TooWeak; std::runtime_error; what these
 /// throw.
 Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::filesystem::path& asset_dir,
                const RunThrough& design, const RunThrough& hidden);
