@@ -1,5 +1,6 @@
 #include "analysis/diagnose/diagnosis.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -35,6 +36,26 @@ TEST_F(DiagnosisOf, GapsAddWhatTheSurrogateDoesNotKnow) {
   const double with = chi2(d.covariance + fitted.covariance), without = chi2(d.covariance);
   EXPECT_NEAR(d.calibration.gap.chi2, with, 1e-6 * with);
   EXPECT_GT(without, 1.01 * with) << "the surrogate is too good for this test";
+}
+
+// Changes are counted in standard uncertainties, what the base parameters make up for does not count, and
+// what is not known of a change c, here c c', is taken off.
+TEST_F(DiagnosisOf, DetectabilityIsWhatIsLeftAfterCompensation) {
+  const Diagnosis d = of(SyntheticWorld::point(0.5, -0.6), 1);
+  const Eigen::Vector2d base(0.2, -0.1), step(0.05, 0);
+  const Eigen::VectorXd other_base = model.at({base + step, {}}).mean - model.at({base - step, {}}).mean,
+                        effect = model.at(SyntheticWorld::point(0.2, -0.1, {{0, 0.5}})).mean -
+                                 model.at(SyntheticWorld::point(0.2, -0.1)).mean;
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(effect.size(), effect.size());
+  const auto strength = [&](const Eigen::VectorXd& change, const Eigen::MatrixXd& unsure, double scale = 1) {
+    return detectability(model, scale * d.covariance, base, change, unsure);
+  };
+  const double plain = strength(effect, none);
+  EXPECT_GT(plain, 1);
+  EXPECT_NEAR(strength(other_base, none), 0, 1e-9);
+  EXPECT_NEAR(strength(effect + 3 * other_base, none), plain, 1e-9);
+  EXPECT_NEAR(strength(effect, none, 4), plain / 2, 1e-9);
+  EXPECT_NEAR(strength(effect, 0.75 * effect * effect.transpose()), plain / 2, 1e-9);
 }
 
 TEST_F(DiagnosisOf, NominalDataSaysThatNothingIsMissing) {
@@ -338,6 +359,40 @@ TEST(ResponseSurface, FollowsAnEffectThatSaturates) {
     EXPECT_NEAR(p.mean[0], truth(0.3, x), 12.0 / 8 / 4) << x;
     EXPECT_LT(std::abs(p.mean[0] - truth(0.3, x)), 4 * std::sqrt(p.covariance(0, 0))) << x;
   }
+}
+
+// Friction and an effect do the same, y = 6 (b + x), and all pairs of them that give the measured numbers are
+// open, b = 0.4 - x. Of amplitudes only 0.3 was simulated often: it is known to fit, others may.
+TEST(WhereToLearn, IsAllThatIsOpenAndNotOnlyWhatIsKnown) {
+  constexpr int kNumbers = 5;
+  ModelSpace space;
+  space.base = {{"material.mu", 0, -1, 1}};
+  space.effects = {{"sticky", "sticky", 0, {{"effects.sticky.size", "", 0, 1}}, {"one"}}};
+  Random random(3, 0, RandomPurpose::design);
+  std::vector<DesignRun> runs;
+  const auto add = [&](double base, double x) {
+    ModelPoint at{Eigen::VectorXd::Constant(1, base), {}};
+    if (x != 0) at.effects.push_back({0, Eigen::VectorXd::Constant(1, x)});
+    Eigen::VectorXd y(kNumbers);
+    for (double& each : y) each = 6 * (base + x) + random.uniform(-1, 1);
+    runs.push_back({at, y});
+  };
+  for (int k = 0; k < 24; ++k) add(random.uniform(-1, 1), 0);
+  for (int k = 0; k < 40; ++k) add(0.1 + 0.1 * random.uniform(-1, 1), 0.3);
+  add(-0.5, 0.9), add(0.2, 0.6);
+  Measurements measured;
+  measured.experiments = {"one"};
+  for (int k = 1; k <= kNumbers; ++k)
+    measured.values.push_back(
+        {0, fmt::format("chi_S{}", k), fmt::format("one/chi_S{}", k), 2.4, 0.1, {}, {}});
+  measured.covariance = 0.1 * 0.1 * Eigen::MatrixXd::Identity(kNumbers, kNumbers);
+  const LearntModel model(space, {"one"}, {runs});
+  const Diagnosis d = diagnose(space, measured, model);
+  const std::vector<ModelPoint> points = where_to_learn(space, d, model, {{0}, false, 0}, 40);
+  ASSERT_EQ(points.size(), 40u);
+  int far = 0;
+  for (const ModelPoint& at : points) far += std::abs(at.effects.at(0).amplitude() - 0.3) > 0.2 ? 1 : 0;
+  EXPECT_GE(far, 22);  // 30 of 40; by the likelihood itself 14
 }
 
 // An effect that does most of what it can in the lowest seventh of its range, more of it where the friction
