@@ -310,16 +310,39 @@ std::vector<const ResponseSurface*> LearntModel::surfaces() const {
 }
 
 std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Diagnosis& d, const LearntModel& model,
-                                       const Hypothesis& hypothesis, int count) {
+                                       const Hypothesis& hypothesis, int count,
+                                       const SimulatedPoints& simulated) {
   const Likelihood likelihood(space, model, d.measured, d.covariance, d.freedom,
                               everything(static_cast<Eigen::Index>(d.measured.values.size())));
+  // The density of amplitudes that are even along a root is one over it; near absence as it is there.
+  const auto log_evenly = [&](const ModelPoint& at) {
+    double sum = 0;
+    for (const EffectAt& each : at.effects)
+      if (const CandidateEffect& effect = space.effects[each.effect]; effect.one_sign())
+        sum -= std::log(std::max(std::abs(effect.along(each.amplitude())), 0.1));
+    return sum;
+  };
   const Evidence evidence = integrate(
-      [&](const Eigen::VectorXd& x) { return likelihood.at(hypothesis, x).log_shape / (kWider * kWider); },
+      [&](const Eigen::VectorXd& x) {
+        return likelihood.at(hypothesis, x).log_shape / (kWider * kWider) +
+               log_evenly(point_of(space, hypothesis, x));
+      },
       box_of(space, hypothesis), kSeed);
+  const auto nearest = [&](const ModelPoint& at, const std::vector<ModelPoint>& among) {
+    double least = std::numeric_limits<double>::max();
+    for (const ModelPoint& each : among) least = std::min(least, space.distance(at, each));
+    return least;
+  };
+  Eigen::VectorXd weights = evidence.weights;
+  for (Eigen::Index s = 0; s < weights.size(); ++s) {
+    const ModelPoint at = point_of(space, hypothesis, evidence.samples.row(s));
+    if (nearest(at, simulated.gave_nothing) < nearest(at, simulated.measured)) weights[s] = 0;
+  }
+  const double all = weights.sum();
   std::vector<ModelPoint> points;
   double sum = 0;
-  for (Eigen::Index s = 0; s < evidence.samples.rows(); ++s) {  // systematic sampling by weight
-    sum += evidence.weights[s];
+  for (Eigen::Index s = 0; s < weights.size() && all > 0; ++s) {  // systematic sampling by weight
+    sum += weights[s] / all;
     while (static_cast<int>(points.size()) < count && sum * count > static_cast<double>(points.size()) + 0.5)
       points.push_back(point_of(space, hypothesis, evidence.samples.row(s)));
   }

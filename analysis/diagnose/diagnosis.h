@@ -128,12 +128,19 @@ using Contradicted = std::set<std::vector<std::size_t>>;
 Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model,
                    const Contradicted& contradicted = {});
 
-/// Points drawn from what the data leave open of a hypothesis, spread wider than it is by a half: where it is
-/// worth learning more. Where the surfaces know little the data may fit, and all such places are open: they
-/// are as likely as those where the surfaces know that it fits (the density counts without its covariance's
-/// volume), else what was simulated first would draw all that follows to itself.
+/// Where simulations were done: those that gave the numbers, and those that failed or did not.
+struct SimulatedPoints {
+  std::vector<ModelPoint> measured, gave_nothing;
+};
+
+/// Points drawn from what the data leave open of a hypothesis, spread wider than it is by a half and evenly
+/// along amplitudes: where it is worth learning more. Where the surfaces know little the data may fit, and
+/// all such places are open: they are as likely as those where the surfaces know that it fits (the density
+/// counts without its covariance's volume), else what was simulated first would draw all that follows to
+/// itself. None lies where the nearest simulation gave nothing.
 std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Diagnosis& diagnosis,
-                                       const LearntModel& model, const Hypothesis& hypothesis, int count);
+                                       const LearntModel& model, const Hypothesis& hypothesis, int count,
+                                       const SimulatedPoints& simulated);
 
 /// Full simulations at a judgement's best parameters leave `gap` and contradict it, or none could be done
 /// (nothing): its probability goes to the others in proportion. Says anew what is named; the order of

@@ -132,10 +132,6 @@ Proposal proposal_of(const std::vector<Sample>& samples, const std::vector<doubl
 
 }  // namespace
 
-Eigen::VectorXd Evidence::mean() const {
-  return samples.transpose() * weights;
-}
-
 double Evidence::quantile(Eigen::Index parameter, double share) const {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(samples.rows()));
   std::iota(order.begin(), order.end(), 0);
@@ -181,6 +177,7 @@ Evidence integrate(const std::function<double(const Eigen::VectorXd&)>& log_like
   // asks for more of them.
   std::vector<Sample> last;
   std::vector<Proposal> proposals;
+  std::vector<std::vector<double>> densities;  // of each sample by each proposal
   std::vector<double> logs;
   for (int stage = 0; stage < kMostLastStages && (stage < kLastStages || effective(logs) < kEnough);
        ++stage) {
@@ -199,10 +196,12 @@ Evidence integrate(const std::function<double(const Eigen::VectorXd&)>& log_like
     last.insert(last.end(), samples.begin(), samples.end());
     if (stage + 1 < kLastStages) continue;
     logs.clear();
-    for (const Sample& s : last) {
-      std::vector<double> densities;
-      for (const Proposal& p : proposals) densities.push_back(p.log_density(s.at));
-      const double mixture = log_sum(densities) - std::log(static_cast<double>(proposals.size()));
+    densities.resize(last.size());
+    for (std::size_t k = 0; k < last.size(); ++k) {
+      const Sample& s = last[k];
+      while (densities[k].size() < proposals.size())
+        densities[k].push_back(proposals[densities[k].size()].log_density(s.at));
+      const double mixture = log_sum(densities[k]) - std::log(static_cast<double>(proposals.size()));
       logs.push_back(s.log_likelihood <= kNever ? kNever : s.log_likelihood + log_prior - mixture);
     }
   }

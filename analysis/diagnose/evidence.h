@@ -18,7 +18,6 @@ struct Evidence {
   Eigen::MatrixXd samples;      ///< a row each
   Eigen::VectorXd weights;      ///< sum to 1
 
-  Eigen::VectorXd mean() const;
   /// Below which a share of the probability of one parameter lies.
   double quantile(Eigen::Index parameter, double share) const;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace scree {
 
@@ -16,7 +17,7 @@ double CandidateEffect::value(std::size_t axis, double coordinate) const {
 }
 
 double CandidateEffect::along(double coordinate) const {
-  if (lowest() < 0 && highest() > 0) return coordinate;
+  if (!one_sign()) return coordinate;
   return std::copysign(std::sqrt(std::abs(coordinate)), coordinate);
 }
 
@@ -26,6 +27,25 @@ bool CandidateEffect::acts_in(const std::string& experiment) const {
 
 bool CandidateEffect::goes_with(const CandidateEffect& other) const {
   return excludes != other.name && other.excludes != name;
+}
+
+double ModelSpace::distance(const ModelPoint& a, const ModelPoint& b) const {
+  constexpr double kNearlyAbsent = 0.01;
+  if (a.effects.size() != b.effects.size()) return std::numeric_limits<double>::infinity();
+  double most = (a.base - b.base).cwiseAbs().maxCoeff();
+  for (std::size_t k = 0; k < a.effects.size(); ++k) {
+    const EffectAt &one = a.effects[k], &other = b.effects[k];
+    if (one.effect != other.effect) return std::numeric_limits<double>::infinity();
+    most = std::max(most, (one.at - other.at).cwiseAbs().maxCoeff());
+    const auto along = [&](const EffectAt& e) {
+      return effects[e.effect].along(std::abs(e.amplitude()) > kNearlyAbsent
+                                         ? e.amplitude()
+                                         : std::copysign(kNearlyAbsent, e.amplitude()));
+    };
+    if (std::abs(one.amplitude()) > kNearlyAbsent || std::abs(other.amplitude()) > kNearlyAbsent)
+      most = std::max(most, std::abs(along(one) - along(other)));
+  }
+  return most;
 }
 
 Eigen::VectorXd ModelSpace::nominal() const {

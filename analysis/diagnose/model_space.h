@@ -37,6 +37,7 @@ struct CandidateEffect {
   double coordinate(double amplitude) const { return (amplitude - absent) / scale(); }
   double lowest() const { return coordinate(axes[0].low); }    ///< coordinates of the ends of its range
   double highest() const { return coordinate(axes[0].high); }  ///< (amplitude)
+  bool one_sign() const { return lowest() >= 0 || highest() <= 0; }
   /// How far along an amplitude is, for distances between models: its coordinate, of effects of one sign the
   /// square root of it (with that sign). Several do most of what they can in the lowest part of their range.
   double along(double coordinate) const;
@@ -63,6 +64,10 @@ struct ModelPoint {
 struct ModelSpace {
   std::vector<BaseAxis> base;
   std::vector<CandidateEffect> effects;
+
+  /// Largest difference of a coordinate, for amplitudes of that and of how far along they are; infinite
+  /// between models of different effects. Amplitudes below a hundredth of the range are all the same.
+  double distance(const ModelPoint& a, const ModelPoint& b) const;
 
   Eigen::VectorXd nominal() const;  ///< coordinates
   /// Index of an effect; the number of effects if there is none of this name.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -14,10 +13,10 @@ namespace {
 
 // Prior standard deviations of coefficients, over the size of their group.
 constexpr double kBase1 = 1, kBase2 = 0.5, kBase11 = 0.5, kBase3 = 0.3;
-constexpr double kEffect1 = 1, kEffect2 = 0.6, kEffect3 = 0.4, kWithBase = 0.5, kWithOther = 0.5,
-                 kWithOther2 = 0.3, kTogether = 0.5;
+constexpr double kEffect1 = 1, kEffect2 = 0.6, kEffect3 = 0.4, kWithBase = 0.5, kWithBase2 = 0.5,
+                 kWithOther = 0.5, kWithOther2 = 0.3, kTogether = 0.5;
 constexpr double kHat = 1, kHatWithBase = 0.5, kHatWithBase2 = 0.3;
-constexpr int kHats = 7;           // along an amplitude, each an eighth of the range wide to either side
+constexpr int kHats = 8;           // along an amplitude, each an eighth of the range wide to either side
 constexpr double kConstant = 1e4;  // of the scatter
 
 // Sizes that a group may have, over the scatter; normal prior on their logarithm. Of the product of two
@@ -59,7 +58,7 @@ class Whitening {
 
 // 1 at the knot, 0 from its neighbours on; knots of negative amplitudes are negative.
 double hat(double along, int knot) {
-  return std::max(0.0, 1 - std::abs((kHats + 1) * along - knot));
+  return std::max(0.0, 1 - std::abs(kHats * along - knot));
 }
 
 double power(double x, int n) {
@@ -112,6 +111,8 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
     add(kEffect3, 3, 0);
     for (std::size_t i = 0; i < p; ++i) {
       add(kWithBase, 1, 0);
+      terms_.back().base_power[i] = 1;
+      add(kWithBase2, 2, 0);
       terms_.back().base_power[i] = 1;
     }
     for (std::size_t k = 1; k < space.effects[e].axes.size(); ++k) {
@@ -235,7 +236,7 @@ ResponseSurface::Fit ResponseSurface::fit(const Features& features, const Eigen:
       double usual = hats ? kLogHatMean : kLogSizeMean;
       if (pair >= 0) {
         const auto& [a, b] = known_pairs_[static_cast<std::size_t>(pair)];
-        usual = 0.5 * std::log(size[a + 1] * size[b + 1]);
+        usual = 0.5 * std::log(size_of(size, a) * size_of(size, b));
       }
       const double spread = hats ? kLogHatStd : kLogSizeStd;
       // Logarithm of the marginal likelihood with the scatter's variance at its best, times the size's prior.
@@ -375,31 +376,37 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
   scatter_ = to_outputs_ * variance.asDiagonal() * to_outputs_.transpose();
 }
 
-// Of products of effects that were never simulated together; over the scatter.
-double ResponseSurface::pair_covariance(const ModelPoint& first, const ModelPoint& second,
+double ResponseSurface::size_of(const Eigen::VectorXd& size, int effect) const {
+  return std::hypot(size[effect + 1], size[effect + 1 + std::ssize(acts_)]);
+}
+
+std::vector<ResponseSurface::Product> ResponseSurface::unknown_products(const ModelPoint& point) const {
+  std::vector<Product> all;
+  for (const EffectAt& a : point.effects)
+    for (const EffectAt& b : point.effects) {
+      if (a.effect >= b.effect || !acts_[a.effect] || !acts_[b.effect]) continue;
+      const std::pair<int, int> pair(static_cast<int>(a.effect), static_cast<int>(b.effect));
+      if (std::find(known_pairs_.begin(), known_pairs_.end(), pair) == known_pairs_.end())
+        all.push_back({pair, kTogether * along(a) * along(b)});
+    }
+  return all;
+}
+
+double ResponseSurface::pair_covariance(const std::vector<Product>& first, const std::vector<Product>& second,
                                         const Fit& fit) const {
-  const auto products = [&](const ModelPoint& point) {
-    std::map<std::pair<int, int>, double> all;
-    for (const EffectAt& a : point.effects)
-      for (const EffectAt& b : point.effects) {
-        if (a.effect >= b.effect || !acts_[a.effect] || !acts_[b.effect]) continue;
-        const std::pair<int, int> pair(static_cast<int>(a.effect), static_cast<int>(b.effect));
-        if (std::find(known_pairs_.begin(), known_pairs_.end(), pair) == known_pairs_.end())
-          all[pair] = kTogether * along(a) * along(b);
-      }
-    return all;
-  };
-  const auto there = products(second);
   double sum = 0;
-  for (const auto& [pair, product] : products(first))
-    if (const auto other = there.find(pair); other != there.end())
-      sum += product * other->second * fit.size[pair.first + 1] * fit.size[pair.second + 1];
+  for (const Product& one : first)
+    for (const Product& other : second)
+      if (one.pair == other.pair)
+        sum +=
+            one.value * other.value * size_of(fit.size, one.pair.first) * size_of(fit.size, one.pair.second);
   return sum;
 }
 
 SurfacePrediction ResponseSurface::at(const ModelPoint& point) const {
   const Values here = values(point);
   const Eigen::Map<const Eigen::VectorXd> value(here.value.data(), std::ssize(here.value));
+  const std::vector<Product> unknown = unknown_products(point);
   const Eigen::Index p = outputs();
   Eigen::VectorXd mean(p), variance(p);
   for (Eigen::Index j = 0; j < p; ++j) {
@@ -417,7 +424,7 @@ SurfacePrediction ResponseSurface::at(const ModelPoint& point) const {
       }
     }
     mean[j] = sum;
-    variance[j] = square + fit.scatter * pair_covariance(point, point, fit);
+    variance[j] = square + fit.scatter * pair_covariance(unknown, unknown, fit);
   }
   return {centre_ + to_outputs_ * mean, to_outputs_ * variance.asDiagonal() * to_outputs_.transpose()};
 }
@@ -433,6 +440,8 @@ std::vector<Forecast> ResponseSurface::forecasts(const std::vector<DesignRun>& r
     for (std::size_t t = 0; t < here.which.size(); ++t) features(i, here.which[t]) = here.value[t];
     found.row(i) = (to_combinations_ * (run.outputs - centre_)).transpose();
   }
+  std::vector<std::vector<Product>> unknown;
+  for (const DesignRun& run : runs) unknown.push_back(unknown_products(run.at));
   std::vector<Forecast> all;
   for (std::size_t j = 0; j < fits_.size(); ++j) {
     const Fit& fit = fits_[j];
@@ -440,7 +449,7 @@ std::vector<Forecast> ResponseSurface::forecasts(const std::vector<DesignRun>& r
     for (Eigen::Index a = 0; a < n; ++a)
       for (Eigen::Index b = 0; b < n; ++b)
         unsure(a, b) +=
-            pair_covariance(runs[static_cast<std::size_t>(a)].at, runs[static_cast<std::size_t>(b)].at, fit);
+            pair_covariance(unknown[static_cast<std::size_t>(a)], unknown[static_cast<std::size_t>(b)], fit);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(unsure);
     const Eigen::VectorXd error = eigen.eigenvectors().transpose() *
                                   (found.col(static_cast<Eigen::Index>(j)) - features * fit.mean) /

@@ -100,7 +100,16 @@ class ResponseSurface {
   };
   // `whole`: with the coefficients; else how large their sizes and the scatter are, and the residuals.
   Fit fit(const Features& features, const Eigen::VectorXd& y, bool whole) const;
-  double pair_covariance(const ModelPoint& first, const ModelPoint& second, const Fit& fit) const;
+  // How large all that an effect does is a priori: polynomial and hats.
+  double size_of(const Eigen::VectorXd& size, int effect) const;
+  // Products of effects that were never simulated together, and their covariance, over the scatter.
+  struct Product {
+    std::pair<int, int> pair;
+    double value;
+  };
+  std::vector<Product> unknown_products(const ModelPoint& point) const;
+  double pair_covariance(const std::vector<Product>& first, const std::vector<Product>& second,
+                         const Fit& fit) const;
 
   std::vector<bool> acts_;  // by effect of the space
   std::vector<CandidateEffect> effects_;

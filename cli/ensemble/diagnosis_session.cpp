@@ -19,10 +19,9 @@ namespace fs = std::filesystem;
 // Seeds of simulations; those of `scree twin` are others (twin.cpp).
 constexpr std::uint64_t kBaseSeeds = 500'000, kEffectSeeds = 510'000, kCheckSeeds = 700'000;
 constexpr std::uint64_t kSeedsOfOneEffect = 1000;
-constexpr int kExplored = 2;     // rounds in which what is open of the leading effect is simulated, too
 constexpr double kRivalBy = 20;  // ratio of probabilities up to which a rival is simulated, too
 constexpr std::size_t kMostRivals = 2;
-constexpr double kMoved = 0.1;        // of a coordinate: a fit has moved, and is simulated anew
+constexpr double kMoved = 0.1;        // distance over which a fit has moved, and is simulated anew
 constexpr std::size_t kMostNext = 5;  // measurements proposed
 
 // A number from a name (FNV-1a): an effect's design does not depend on which others there are.
@@ -72,20 +71,6 @@ void read_piles(const ModelSpace& space, const SimulationCounts& counts,
     }
     runs.push_back(std::move(reading));
   }
-}
-
-bool moved(const ModelSpace& space, const ModelPoint& a, const ModelPoint& b) {
-  if (a.effects.size() != b.effects.size()) return true;
-  double most = (a.base - b.base).cwiseAbs().maxCoeff();
-  for (std::size_t k = 0; k < a.effects.size(); ++k) {
-    const EffectAt &one = a.effects[k], &other = b.effects[k];
-    if (one.effect != other.effect) return true;
-    const CandidateEffect& effect = space.effects[one.effect];
-    most = std::max(most, std::abs(effect.along(one.amplitude()) - effect.along(other.amplitude())));
-    if (one.at.size() > 1)
-      most = std::max(most, (one.at - other.at).tail(one.at.size() - 1).cwiseAbs().maxCoeff());
-  }
-  return most > kMoved;
 }
 
 // Of a model, that gave what was measured.
@@ -269,8 +254,7 @@ int DiagnosisSession::most_further() const {
   // what is named.
   const int points = (3 + static_cast<int>(kMostRivals)) * model_.simulations.rounds + 1;
   return static_cast<int>(design_.size()) *
-         (points * model_.simulations.check +
-          std::min(kExplored, model_.simulations.rounds) * model_.simulations.effect);
+         (points * model_.simulations.check + model_.simulations.rounds * model_.simulations.effect);
 }
 
 void DiagnosisSession::learn_from(const std::vector<ExperimentRuns>& runs, const RunThrough& run,
@@ -292,6 +276,8 @@ void DiagnosisSession::learn_from(const std::vector<ExperimentRuns>& runs, const
     failure_[e].clear();
     for (const auto& each : here)
       if (each && each->state == RunState::failed) failure_[e] = each->message;
+    for (std::size_t k = 0; k < here.size(); ++k)
+      if (!measured_in(here[k], outputs)) gave_nothing_.push_back(runs[e].runs[k].at);
     if (gathered.left_out > 0)
       outcome.notes.push_back(fmt::format(
           "{}: {} of {} simulations failed, did not come to rest or lack a measured number; left out",
@@ -349,6 +335,13 @@ SimulatedModel DiagnosisSession::simulate(const ModelPoint& point, const RunThro
     next += width;
   }
   return simulated;
+}
+
+SimulatedPoints DiagnosisSession::simulated() const {
+  SimulatedPoints all{{}, gave_nothing_};
+  for (const auto& runs : learnt_)
+    for (const DesignRun& run : runs) all.measured.push_back(run.at);
+  return all;
 }
 
 void DiagnosisSession::explore(const std::vector<ModelPoint>& points, const RunThrough& run,
@@ -467,7 +460,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   const auto is_shown = [&](const Judgement& j) {
     if (not_to_be_shown.contains(j.hypothesis.effects)) return true;
     const auto there = shown.find(j.hypothesis.effects);
-    return there != shown.end() && !moved(space_, there->second.at, j.best);
+    return there != shown.end() && space_.distance(there->second.at, j.best) <= kMoved;
   };
   // Whether there was anything to simulate.
   const auto show = [&](const Judgement& j) {
@@ -489,7 +482,8 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   // Simulations at the fitted values do not give the data, whatever surfaces say.
   const auto contradicts = [&](const Judgement& j) {
     const auto there = shown.find(j.hypothesis.effects);
-    return there != shown.end() && !moved(space_, there->second.at, j.best) && gap_shown(j).p <= kFitsAbove;
+    return there != shown.end() && space_.distance(there->second.at, j.best) <= kMoved &&
+           gap_shown(j).p <= kFitsAbove;
   };
   const auto contradicted = [&] {
     Contradicted all;
@@ -513,11 +507,12 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     bool fresh = show(d.calibration);
     if (not_calibration()) {
       const std::vector<const Judgement*> worth = worth_simulating(d);
-      for (const Judgement* j : worth) {
-        if (!show(*j)) continue;
+      for (const Judgement* j : worth)
+        if (show(*j)) fresh = true;
+      if (const Judgement& leading = *worth.front(); shown.contains(leading.hypothesis.effects)) {
+        explore(where_to_learn(space_, d, model, leading.hypothesis, model_.simulations.effect, simulated()),
+                run, outcome);
         fresh = true;
-        if (j == worth.front() && round < kExplored && shown.contains(j->hypothesis.effects))
-          explore(where_to_learn(space_, d, model, j->hypothesis, model_.simulations.effect), run, outcome);
       }
     }
     if (!fresh) {

@@ -86,6 +86,7 @@ class DiagnosisSession {
   SimulatedModel simulate(const ModelPoint& point, const RunThrough& run, DiagnosisOutcome& outcome);
   // Learns from simulations spread over what the data leave open of a hypothesis.
   void explore(const std::vector<ModelPoint>& points, const RunThrough& run, DiagnosisOutcome& outcome);
+  SimulatedPoints simulated() const;
   LearntModel learn() const;
   // How the model foretold the simulations after the first so many, by experiment.
   void compare(const LearntModel& model, const std::vector<std::size_t>& known);
@@ -98,6 +99,7 @@ class DiagnosisSession {
   ModelSpace space_;
   std::vector<ExperimentRuns> design_;
   DesignRuns learnt_;
+  std::vector<ModelPoint> gave_nothing_;          // of which a simulation failed or lacks a measured number
   std::vector<std::vector<Forecast>> forecasts_;  // by experiment
   struct WholeRun {
     ModelPoint at;

@@ -15,11 +15,12 @@ namespace scree {
 namespace {
 
 constexpr double kInnerBase = 0.6, kInnerOther = 0.8;  // of the ranges, from which a truth is drawn
-constexpr int kLeastPairs = 12;          // simulations with and without an effect that say how strong it is
-constexpr int kMostAmplitudes = 8;       // tried
-constexpr double kStrengthWithin = 0.1;  // of what is asked for
-constexpr double kLeastStrength = 0.1;   // against logarithms of 0
-constexpr int kMostTries = 2;            // times the repeats: simulations of a truth
+constexpr int kLeastPairs = 12;           // simulations with and without an effect that say how strong it is
+constexpr int kMostAmplitudes = 8;        // tried
+constexpr double kStrengthWithin = 0.1;   // of what is asked for, as a logarithm
+constexpr double kStrengthAtMost = 0.25;  // off, as a logarithm, where no amplitude comes nearer
+constexpr double kLeastStrength = 0.05;   // of what is asked for, against logarithms of 0
+constexpr int kMostTries = 2;             // times the repeats: simulations of a truth
 constexpr std::uint64_t kTwinSeeds = 1'000'000, kStrengthSeeds = 1'500'000'000, kSeedsOfOneTwin = 1000;
 
 std::vector<Dataset::Experiment> experiments_of(const DiagnosisModel& model) {
@@ -53,36 +54,52 @@ struct Strength {
   double amplitude, strength;
 };
 
-// Looks for the amplitude between 0 and `end` at which the effect is so strong, by lines between logarithms;
-// nothing, and how strong it is at the end, if it is too weak.
-std::optional<Strength> amplitude_of(double asked, double end,
-                                     const std::function<double(double)>& strength_at, double& strongest) {
-  std::optional<Strength> best, below, above;
-  const auto off = [&](const Strength& s) {
-    return std::abs(std::log(std::max(s.strength, kLeastStrength) / asked));
-  };
+// What was tried in the search for an amplitude.
+struct StrengthSearch {
+  std::optional<Strength> best;  // nearest to what is asked for
+  double strongest = 0;
+  bool too_weak = false;
+};
+
+// Looks for the amplitude between 0 and `end` at which the effect is so strong, by lines between logarithms.
+// `strength_at` gives nothing where simulations give no measurement: the amplitude is then taken for too
+// large.
+StrengthSearch search_amplitude(double asked, double end,
+                                const std::function<std::optional<double>(double)>& strength_at) {
+  StrengthSearch search;
+  std::optional<Strength> below, above;
+  std::optional<double> fails;  // from there on
+  const double least = kLeastStrength * asked;
+  const auto off = [&](const Strength& s) { return std::abs(std::log(std::max(s.strength, least) / asked)); };
   double amplitude = end / 4;
   for (int k = 0; k < kMostAmplitudes; ++k) {
-    const Strength here{amplitude, strength_at(amplitude)};
-    strongest = std::max(strongest, here.strength);
-    if (!best || off(here) < off(*best)) best = here;
+    const std::optional<double> strength = strength_at(amplitude);
+    if (!strength) {
+      fails = amplitude;
+      amplitude = below ? std::sqrt(below->amplitude * amplitude) : 0.5 * amplitude;
+      if (end < 0 && below) amplitude = -std::abs(amplitude);
+      continue;
+    }
+    const Strength here{amplitude, *strength};
+    search.strongest = std::max(search.strongest, here.strength);
+    if (!search.best || off(here) < off(*search.best)) search.best = here;
     if (off(here) < kStrengthWithin) break;
     (here.strength < asked ? below : above) = here;
-    const double share = asked / std::max(here.strength, kLeastStrength);
+    const double share = asked / std::max(here.strength, least);
     if (!above) {
-      if (amplitude == end) return {};
-      amplitude *= std::clamp(share, 1.3, 4.0);
-      if (std::abs(amplitude) > std::abs(end)) amplitude = end;
+      search.too_weak = amplitude == end;
+      if (search.too_weak) break;
+      const double next = amplitude * std::clamp(share, 1.3, 4.0);
+      amplitude = fails ? 0.5 * (amplitude + *fails) : std::abs(next) > std::abs(end) ? end : next;
     } else if (!below) {
       amplitude *= std::clamp(share, 0.25, 0.8);
     } else {
-      const double low = std::log(std::max(below->strength, kLeastStrength)),
-                   high = std::log(above->strength),
+      const double low = std::log(std::max(below->strength, least)), high = std::log(above->strength),
                    part = std::clamp((std::log(asked) - low) / (high - low), 0.1, 0.9);
       amplitude = below->amplitude * std::pow(above->amplitude / below->amplitude, part);
     }
   }
-  return best;
+  return search;
 }
 
 }  // namespace
@@ -143,7 +160,7 @@ Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::fil
   twin.truth.at.base.resize(static_cast<Eigen::Index>(space.base.size()));
   for (double& x : twin.truth.at.base) x = kInnerBase * random.uniform(-1, 1);
   // With and without the effect about the truth's base parameters, of the same seeds.
-  const auto strength_of = [&](const EffectAt& there) {
+  const auto strength_of = [&](const EffectAt& there) -> std::optional<double> {
     const int pairs = std::max(spec.repeats, kLeastPairs);
     std::vector<ExperimentRuns> both;
     for (std::size_t e = 0; e < experiments.size(); ++e)
@@ -163,9 +180,7 @@ Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::fil
         if (const auto one = measured_in(with[k], outputs), other = measured_in(without[k], outputs);
             one && other)
           changes.push_back(*one - *other);
-      if (!with.empty() && std::ssize(changes) < kLeastPairs / 2)
-        throw std::runtime_error(fmt::format("{}: {} of {} simulations of the truth gave no measurement",
-                                             names[e], with.size() - changes.size(), with.size()));
+      if (!with.empty() && std::ssize(changes) < kLeastPairs / 2) return {};
       const double count = static_cast<double>(changes.size());
       for (const Eigen::VectorXd& each : changes) change.segment(begin, width) += each / count;
       for (const Eigen::VectorXd& each : changes) {
@@ -176,6 +191,7 @@ Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::fil
     }
     return detectability(surface, covariance, twin.truth.at.base, change, unsure);
   };
+  std::vector<std::pair<std::size_t, double>> strengths;  // by effect
   for (const std::string& name : spec.effects) {
     const std::size_t e = space.find(name);
     if (e == space.effects.size())
@@ -192,23 +208,36 @@ Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::fil
       return strength_of(there);
     };
     // The other direction if this one is too weak.
-    std::optional<Strength> found;
-    double strongest = 0;
-    for (int way = 0; way < 2 && !found; ++way, sign = -sign)
-      if (const double end = sign < 0 ? ends[0] : ends[1]; end * sign > 0)
-        found = amplitude_of(spec.strength, end, strength, strongest);
-    if (!found)
+    StrengthSearch found;
+    for (int way = 0; way < 2; ++way, sign = -sign)
+      if (const double end = sign < 0 ? ends[0] : ends[1]; end * sign > 0) {
+        const double before = found.strongest;
+        found = search_amplitude(spec.strength, end, strength);
+        found.strongest = std::max(found.strongest, before);
+        if (!found.too_weak && found.best) break;
+      }
+    if (!found.best)
+      throw std::runtime_error(fmt::format(
+          "{}: simulations of the truth gave no measurement at any amplitude that was tried", name));
+    if (found.too_weak)
+      throw TooWeak(fmt::format(
+          "{} shifts these observables by {:.2g} standard uncertainties at most of the amplitudes "
+          "tried up to the end of its prior range, not by {:g}; more --repeats, or less --noise, "
+          "make it stronger",
+          name, found.strongest, spec.strength));
+    if (std::abs(std::log(std::max(found.best->strength / spec.strength, kLeastStrength))) > kStrengthAtMost)
       throw TooWeak(
-          fmt::format("{} shifts these observables by {:.2g} standard uncertainties at most within its prior "
-                      "range, not by "
-                      "{:g}; more --repeats, or less --noise, make it stronger",
-                      name, strongest, spec.strength));
-    there.at[0] = found->amplitude;
-    twin.truth.detectability.push_back(found->strength);
+          fmt::format("{}: no amplitude was found at which it shifts these observables by {:g} "
+                      "standard uncertainties; the nearest gives {:.2g}",
+                      name, spec.strength, found.best->strength));
+    there.at[0] = found.best->amplitude;
+    strengths.emplace_back(e, found.best->strength);
     twin.truth.at.effects.push_back(there);
   }
   std::sort(twin.truth.at.effects.begin(), twin.truth.at.effects.end(),
             [](const auto& a, const auto& b) { return a.effect < b.effect; });
+  std::sort(strengths.begin(), strengths.end());
+  for (const auto& [e, strength] : strengths) twin.truth.detectability.push_back(strength);
 
   // A simulation that gives no measurement (a heap without a flank) is repeated with another seed.
   std::vector<std::vector<DesignRun>> measured(experiments.size());

@@ -388,7 +388,7 @@ TEST(WhereToLearn, IsAllThatIsOpenAndNotOnlyWhatIsKnown) {
   measured.covariance = 0.1 * 0.1 * Eigen::MatrixXd::Identity(kNumbers, kNumbers);
   const LearntModel model(space, {"one"}, {runs});
   const Diagnosis d = diagnose(space, measured, model);
-  const std::vector<ModelPoint> points = where_to_learn(space, d, model, {{0}, false, 0}, 40);
+  const std::vector<ModelPoint> points = where_to_learn(space, d, model, {{0}, false, 0}, 40, {});
   ASSERT_EQ(points.size(), 40u);
   int far = 0;
   for (const ModelPoint& at : points) far += std::abs(at.effects.at(0).amplitude() - 0.3) > 0.2 ? 1 : 0;
