@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using testing::HasSubstr;
 
-// A load of 40 t over a bench of 4 m, four effects: some 70 simulations of a third of
-// a second.
+// A load of 40 t over a bench of 4 m, four effects: some 50 simulations of a tenth of a second, then 60 to
+// say how strong a hidden effect is, and as many again to find it.
 const char* const kModel = R"(title: Dump
 parameters:
   material.mu: {nominal: 0.4, from: 0.3, to: 0.5}

@@ -101,6 +101,11 @@ class Session : public testing::Test {
     EXPECT_TRUE(loaded.errors.empty()) << loaded.errors.front().text();
     return loaded.model;
   }
+  ModelSpace model_space() const {
+    std::vector<Dataset::Experiment> experiments;
+    for (const ModelExperiment& each : model.experiments) experiments.push_back(each.experiment);
+    return space_of(model, experiments, {});
+  }
   // A twin's data as diagnose reads them from its files.
   JoinedData data_of(const TwinSpec& spec, TwinTruth* truth = nullptr) {
     FormulaSimulator formula;
@@ -241,6 +246,16 @@ TEST_F(Session, TwinsHaveTheStrengthAskedForAndUseNoSeedOfTheDesign) {
   data_of({{"twisting"}, 4, 5, 0.5, 9, ""}, &truth);
   ASSERT_EQ(truth.detectability.size(), 1u);
   EXPECT_NEAR(truth.detectability[0], 4, 0.5);
+  // By the formulas: each number scatters by 0.3, an error of half of that is added, five repeats, and what
+  // goes along with friction does not count. The twin knows the scatter of 30 simulations.
+  const double t = YAML::Load(twin_answer(model, {{"twisting"}, 4, 5, 0.5, 9, ""},
+                                          truth))["effects"][0]["values"]["effects.twisting.mu_t"]
+                       .as<double>();
+  Eigen::VectorXd change(6), friction(6);
+  change << 3 * t, 9 * t * t, -7 * t, t, 3 * t, -2 * t;
+  friction << 100, 60, 20, -30, 5, 0;
+  change -= friction * friction.dot(change) / friction.squaredNorm();
+  EXPECT_NEAR(change.norm() / std::sqrt(6) / (0.3 * std::sqrt(1.25 / 5)), 4, 0.8);
   EXPECT_LE(truth.at.base.cwiseAbs().maxCoeff(), 0.6);
   EXPECT_THROW(data_of({{"twisting"}, 4000, 5, 0.5, 9, ""}), TooWeak);
   const std::string answer = twin_answer(model, {{"twisting"}, 4, 5, 0.5, 9, ""}, truth);
@@ -273,6 +288,34 @@ TEST_F(Session, TwinsRepeatWhatGivesNoMeasurement) {
   EXPECT_LT(with_failures(4), 16);
   EXPECT_EQ(with_failures(1000003), 10);
   EXPECT_THROW(with_failures(1), std::runtime_error);
+}
+
+// Where an effect is too strong to be simulated, weaker ones are tried; where nothing is simulated, that is
+// said.
+TEST_F(Session, TwinsKeepToAmplitudesThatCanBeSimulated) {
+  FormulaSimulator formula;
+  double most = 1e9;  // bond number from which on simulations fail
+  const auto hidden = [&](const std::vector<RunRequest>& requests) {
+    auto results = formula(requests);
+    for (std::size_t k = 0; k < requests.size(); ++k)
+      if (const YAML::Node effects = YAML::Load(requests[k].scenario)["effects"];
+          effects && effects["cohesion"] && effects["cohesion"]["bond_number"].as<double>() > most)
+        results[k]->state = RunState::failed;
+    return results;
+  };
+  const auto bond_number = [&] {
+    const TwinSpec spec{{"cohesion"}, 4, 5, 0.5, 3, ""};
+    const Twin twin = make_twin(model, spec, kAssets, std::ref(formula), hidden);
+    EXPECT_NEAR(twin.truth.detectability.at(0), 4, 1);
+    return model_space().effects[0].amplitude(twin.truth.at.effects.at(0).amplitude());
+  };
+  const double free = bond_number();
+  most = 1.2 * free;
+  EXPECT_NEAR(bond_number(), free, 0.2 * free);
+  most = 0.5 * free;
+  EXPECT_THROW(bond_number(), TooWeak);
+  most = 0;
+  EXPECT_THROW(bond_number(), std::runtime_error);
 }
 
 TEST_F(Session, ModelFilesAreChecked) {
