@@ -369,9 +369,14 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return ones[a].evidence.log_evidence > ones[b].evidence.log_evidence;
   });
-  // Two effects are for what none explains alone.
+  const auto weight = [](const Judgement& j) {
+    return std::log(j.hypothesis.prior) + j.evidence.log_evidence;
+  };
+  const Judgement unknown = judge(space, likelihood, {{}, true, kPriorUnknown});
+  // Two effects are for what none explains alone, or none better than something unknown does.
   const bool one_explains = std::any_of(ones.begin(), ones.end(), [&](const Judgement& j) {
-    return j.gap.p > kNothingAbove && !contradicted.contains(j.hypothesis.effects);
+    return j.gap.p > kNothingAbove && !contradicted.contains(j.hypothesis.effects) &&
+           weight(j) > weight(unknown);
   });
   const bool calibration_explains = d.calibration.gap.p > kFitsAbove && !contradicted.contains({});
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
@@ -388,11 +393,8 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
     d.judgements.push_back(judge(space, likelihood, {{a, b}, false, kPriorTwo / all_pairs}));
   d.judgements.insert(d.judgements.end(), ones.begin(), ones.end());
   d.judgements.push_back(d.calibration);
-  d.judgements.push_back(judge(space, likelihood, {{}, true, kPriorUnknown}));
+  d.judgements.push_back(unknown);
 
-  const auto weight = [](const Judgement& j) {
-    return std::log(j.hypothesis.prior) + j.evidence.log_evidence;
-  };
   double most = -std::numeric_limits<double>::infinity(), sum = 0;
   for (const Judgement& j : d.judgements) most = std::max(most, weight(j));
   for (const Judgement& j : d.judgements) sum += std::exp(weight(j) - most);

@@ -123,8 +123,8 @@ class LearntModel {
 /// the base model alone.
 using Contradicted = std::set<std::vector<std::size_t>>;
 
-/// Finds, re-calibrates and names. Pairs are tried where no effect explains the data that is not
-/// contradicted.
+/// Finds, re-calibrates and names. Pairs are tried where no effect explains the data that is not contradicted
+/// and more probable than something unknown.
 Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model,
                    const Contradicted& contradicted = {});
 
