@@ -361,6 +361,24 @@ TEST(ResponseSurface, FollowsAnEffectThatSaturates) {
   }
 }
 
+// Along a root at the bottom of a range, 0.0625 is 0.25 and 0.25 is 0.5; at its top the coordinate itself
+// counts; below a hundredth all are the same.
+TEST(ModelSpaceDistance, IsThatOfCoordinatesAndOfHowFarAlongTheyAre) {
+  const SyntheticWorld world;
+  const auto distance = [&](double first, double second, std::size_t effect = 0) {
+    return world.space.distance(SyntheticWorld::point(0.1, 0.2, {{effect, first}}),
+                                SyntheticWorld::point(0.1, 0.2, {{effect, second}}));
+  };
+  EXPECT_NEAR(distance(0.0625, 0.25), 0.25, 1e-12);
+  EXPECT_NEAR(distance(0.81, 1), 0.19, 1e-12);
+  EXPECT_NEAR(distance(0, 0.01), 0.01, 1e-12);
+  EXPECT_NEAR(distance(0, 0.04), 0.1, 1e-12);
+  EXPECT_NEAR(distance(-0.25, 0.25, 3), 0.5, 1e-12) << "two signs: no root";
+  const ModelPoint plain = SyntheticWorld::point(0.1, 0.2), other = SyntheticWorld::point(0.1, -0.2);
+  EXPECT_NEAR(world.space.distance(plain, other), 0.4, 1e-12);
+  EXPECT_TRUE(std::isinf(world.space.distance(plain, SyntheticWorld::point(0.1, 0.2, {{0, 0.5}}))));
+}
+
 // Friction and an effect do the same, y = 6 (b + x), and all pairs of them that give the measured numbers are
 // open, b = 0.4 - x. Of amplitudes only 0.3 was simulated often: it is known to fit, others may.
 TEST(WhereToLearn, IsAllThatIsOpenAndNotOnlyWhatIsKnown) {
