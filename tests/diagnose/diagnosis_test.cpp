@@ -382,7 +382,7 @@ TEST(ModelSpaceDistance, IsThatOfCoordinatesAndOfHowFarAlongTheyAre) {
 // Friction and an effect do the same, y = 6 (b + x), and all pairs of them that give the measured numbers are
 // open, b = 0.4 - x. Of amplitudes only 0.3 was simulated often: it is known to fit, others may.
 TEST(WhereToLearn, IsAllThatIsOpenAndNotOnlyWhatIsKnown) {
-  constexpr int kNumbers = 5;
+  constexpr int kNumbers = 12;
   ModelSpace space;
   space.base = {{"material.mu", 0, -1, 1}};
   space.effects = {{"sticky", "sticky", 0, {{"effects.sticky.size", "", 0, 1}}, {"one"}}};
@@ -410,7 +410,7 @@ TEST(WhereToLearn, IsAllThatIsOpenAndNotOnlyWhatIsKnown) {
   ASSERT_EQ(points.size(), 40u);
   int far = 0;
   for (const ModelPoint& at : points) far += std::abs(at.effects.at(0).amplitude() - 0.3) > 0.2 ? 1 : 0;
-  EXPECT_GE(far, 22);  // 30 of 40; by the likelihood itself 14
+  EXPECT_GE(far, 19);  // 23 of 40; by the likelihood itself 14
 }
 
 // An effect that does most of what it can in the lowest seventh of its range, more of it where the friction
