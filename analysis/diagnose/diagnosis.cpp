@@ -184,11 +184,10 @@ class Compensation {
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> made_up_for_;
 };
 
-// What the effects do at a point, as the surfaces have it.
-Eigen::VectorXd signature(const LearntModel& model, const Eigen::MatrixXd& covariance,
+// What the effects do at a point, as the surfaces have it; `compensation`: about its base parameters.
+Eigen::VectorXd signature(const LearntModel& model, const Compensation& compensation,
                           const ModelPoint& point) {
-  return Compensation(model, covariance, point.base)
-      .left(model.at(point).mean - model.at({point.base, {}}).mean);
+  return compensation.left(model.at(point).mean - model.at({point.base, {}}).mean);
 }
 
 double rms(const Eigen::VectorXd& x) {
@@ -400,14 +399,15 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
   for (const Judgement& j : d.judgements) sum += std::exp(weight(j) - most);
   for (Judgement& j : d.judgements) {
     j.probability = std::exp(weight(j) - most) / sum;
-    j.signature = rms(signature(model, d.covariance, j.best));
+    j.signature = rms(signature(model, Compensation(model, d.covariance, j.best.base), j.best));
     if (j.hypothesis.effects.empty() && !j.hypothesis.unknown) d.calibration.probability = j.probability;
   }
   sort_by_probability(d.judgements);
 
   std::vector<Eigen::VectorXd> signatures;
+  const Compensation about_calibration(model, d.covariance, d.calibration.best.base);
   for (const Judgement& one : ones) {
-    Eigen::VectorXd s = signature(model, d.covariance, {d.calibration.best.base, one.best.effects});
+    Eigen::VectorXd s = signature(model, about_calibration, {d.calibration.best.base, one.best.effects});
     signatures.push_back(s.norm() > 0 ? Eigen::VectorXd(s.normalized()) : s);
   }
   const auto n = static_cast<Eigen::Index>(count);
