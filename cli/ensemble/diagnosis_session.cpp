@@ -185,7 +185,7 @@ GatheredRuns gather(const ExperimentRuns& planned, const std::vector<std::option
     if (const auto values = measured_in(results[k], outputs))
       gathered.runs.push_back({planned.runs[k].at, *values, planned.requests[k].pile});
     else
-      ++gathered.left_out;
+      gathered.left_out.push_back(planned.runs[k].at);
   return gathered;
 }
 
@@ -276,12 +276,11 @@ void DiagnosisSession::learn_from(const std::vector<ExperimentRuns>& runs, const
     failure_[e].clear();
     for (const auto& each : here)
       if (each && each->state == RunState::failed) failure_[e] = each->message;
-    for (std::size_t k = 0; k < here.size(); ++k)
-      if (!measured_in(here[k], outputs)) gave_nothing_.push_back(runs[e].runs[k].at);
-    if (gathered.left_out > 0)
+    gave_nothing_.insert(gave_nothing_.end(), gathered.left_out.begin(), gathered.left_out.end());
+    if (!gathered.left_out.empty())
       outcome.notes.push_back(fmt::format(
           "{}: {} of {} simulations failed, did not come to rest or lack a measured number; left out",
-          data_.experiments[e].name, gathered.left_out, here.size()));
+          data_.experiments[e].name, gathered.left_out.size(), here.size()));
     outcome.simulations += static_cast<int>(gathered.runs.size());
     for (DesignRun& each : gathered.runs) learnt_[e].push_back(std::move(each));
     for (std::size_t k = 0; k < here.size(); ++k)

@@ -52,7 +52,7 @@ std::optional<Eigen::VectorXd> measured_in(const std::optional<StoredResult>& re
 /// are left out.
 struct GatheredRuns {
   std::vector<DesignRun> runs;
-  int left_out = 0;
+  std::vector<ModelPoint> left_out;  ///< where those were
 };
 GatheredRuns gather(const ExperimentRuns& planned, const std::vector<std::optional<StoredResult>>& results,
                     const std::vector<std::string>& outputs);
