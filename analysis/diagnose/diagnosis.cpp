@@ -22,6 +22,7 @@ constexpr double kLogUnknownLow = 0,
                  kLogUnknownHigh = 8;   // of the variance of what is unknown, over the data's
 constexpr std::uint64_t kSeed = 20177;  // of the integrals
 constexpr double kWider = 1.5;          // spread of points to be learnt from, over that of what is open
+constexpr double kWithin = 0.9;         // probability of the intervals
 constexpr double kStep = 0.05;          // of a numerical derivative by a coordinate
 
 // `scatter_freedom`: of the covariance; infinite if it is known.
@@ -136,8 +137,8 @@ Judgement judge(const ModelSpace& space, const Likelihood& likelihood, const Hyp
                  likelihood.freedom());
   Eigen::Index next = 0;
   const auto interval = [&](auto&& value) {
-    Judgement::Interval i{value(j.evidence.quantile(next, 0.05)), value(j.evidence.quantile(next, 0.5)),
-                          value(j.evidence.quantile(next, 0.95))};
+    const Evidence::Range range = j.evidence.shortest(next, kWithin);
+    Judgement::Interval i{value(range.low), value(j.evidence.quantile(next, 0.5)), value(range.high)};
     if (i.low > i.high) std::swap(i.low, i.high);
     ++next;
     return i;
@@ -282,9 +283,9 @@ DiagnosisVerdict verdict_of(const Diagnosis& d) {
 }  // namespace
 
 LearntModel::LearntModel(const ModelSpace& space, const std::vector<std::string>& experiments,
-                         const DesignRuns& runs, std::vector<double> widening)
+                         const DesignRuns& runs, std::vector<Widening> widening)
     : widening_(std::move(widening)) {
-  widening_.resize(experiments.size(), 1.0);
+  widening_.resize(experiments.size());
   for (std::size_t e = 0; e < experiments.size(); ++e) surfaces_.emplace_back(space, experiments[e], runs[e]);
 }
 
@@ -296,7 +297,19 @@ SurfacePrediction LearntModel::at(const ModelPoint& point) const {
     const SurfacePrediction here = surfaces_[e].at(point);
     const Eigen::Index width = surfaces_[e].outputs();
     all.mean.segment(first, width) = here.mean;
-    all.covariance.block(first, first, width, width) = widening_[e] * here.covariance;
+    all.covariance.block(first, first, width, width) = widening_[e].covariance * here.covariance;
+    first += width;
+  }
+  return all;
+}
+
+Eigen::MatrixXd LearntModel::scatter() const {
+  Eigen::Index n = 0, first = 0;
+  for (const ResponseSurface& surface : surfaces_) n += surface.outputs();
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
+  for (std::size_t e = 0; e < surfaces_.size(); ++e) {
+    const Eigen::Index width = surfaces_[e].outputs();
+    all.block(first, first, width, width) = widening_[e].scatter * surfaces_[e].scatter();
     first += width;
   }
   return all;
@@ -349,7 +362,7 @@ std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Diagnosis&
 }
 
 Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model,
-                   const Contradicted& contradicted) {
+                   const Contradicted& contradicted, Pairs when, const Diagnosis* before) {
   Diagnosis d;
   d.measured = measured;
   const WorkingCovariance working = working_covariance(measured, model.surfaces());
@@ -358,11 +371,17 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
   const Likelihood likelihood(space, model, measured, d.covariance, d.freedom,
                               everything(static_cast<Eigen::Index>(measured.values.size())));
   find(space, model, d);
-  d.calibration = judge(space, likelihood, {{}, false, kPriorCalibration});
+  const auto judge = [&](const Hypothesis& h) {
+    if (before != nullptr)
+      for (const Judgement& j : before->judgements)
+        if (j.hypothesis.effects == h.effects && j.hypothesis.unknown == h.unknown) return j;
+    return scree::judge(space, likelihood, h);
+  };
+  d.calibration = judge({{}, false, kPriorCalibration});
   const std::size_t count = space.effects.size();
   std::vector<Judgement> ones;
   for (std::size_t e = 0; e < count; ++e)
-    ones.push_back(judge(space, likelihood, {{e}, false, kPriorOne / static_cast<double>(count)}));
+    ones.push_back(judge({{e}, false, kPriorOne / static_cast<double>(count)}));
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -371,7 +390,7 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
   const auto weight = [](const Judgement& j) {
     return std::log(j.hypothesis.prior) + j.evidence.log_evidence;
   };
-  const Judgement unknown = judge(space, likelihood, {{}, true, kPriorUnknown});
+  const Judgement unknown = judge({{}, true, kPriorUnknown});
   // Two effects are for what none explains alone, or none better than something unknown does.
   const bool one_explains = std::any_of(ones.begin(), ones.end(), [&](const Judgement& j) {
     return j.gap.p > kNothingAbove && !contradicted.contains(j.hypothesis.effects) &&
@@ -379,7 +398,7 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
   });
   const bool calibration_explains = d.calibration.gap.p > kFitsAbove && !contradicted.contains({});
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  if (!calibration_explains && !one_explains)
+  if (when == Pairs::always || (!calibration_explains && !one_explains))
     for (std::size_t k = 0; k < std::min(kPairsOfBest, count); ++k)
       for (std::size_t e = 0; e < count; ++e) {
         const std::pair<std::size_t, std::size_t> pair(std::min(order[k], e), std::max(order[k], e));
@@ -388,8 +407,7 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
           pairs.emplace_back(pair);
       }
   const double all_pairs = 0.5 * static_cast<double>(count) * (static_cast<double>(count) - 1);
-  for (const auto& [a, b] : pairs)
-    d.judgements.push_back(judge(space, likelihood, {{a, b}, false, kPriorTwo / all_pairs}));
+  for (const auto& [a, b] : pairs) d.judgements.push_back(judge({{a, b}, false, kPriorTwo / all_pairs}));
   d.judgements.insert(d.judgements.end(), ones.begin(), ones.end());
   d.judgements.push_back(d.calibration);
   d.judgements.push_back(unknown);
@@ -484,13 +502,7 @@ HeldOut held_out(const ModelSpace& space, const Diagnosis& d, const LearntModel&
 }
 
 Gap simulated_gap(const Diagnosis& d, const LearntModel& model, const Eigen::VectorXd& mean, int runs) {
-  Eigen::MatrixXd covariance = d.covariance;
-  Eigen::Index first = 0;
-  for (const ResponseSurface* surface : model.surfaces()) {
-    const Eigen::Index n = surface->outputs();
-    covariance.block(first, first, n, n) += surface->scatter() / runs;
-    first += n;
-  }
+  const Eigen::MatrixXd covariance = d.covariance + model.scatter() / runs;
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
   return gap_of(density(d.measured.vector() - mean, covariance, scale, d.freedom).chi2,
                 static_cast<int>(mean.size()), 0, d.freedom);

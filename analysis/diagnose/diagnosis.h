@@ -58,7 +58,7 @@ struct Judgement {
   struct Interval {
     double low, middle, high;
   };
-  std::vector<Interval> base;                  ///< of each base parameter, in its unit: 5, 50 and 95 %
+  std::vector<Interval> base;                  ///< of each base parameter, in its unit: median, shortest 90 %
   std::vector<std::vector<Interval>> effects;  ///< of each effect's parameters
   /// Root mean square change by the effects as the surfaces have it, in standard uncertainties, after what
   /// the base parameters make up for.
@@ -106,27 +106,33 @@ using DesignRuns = std::vector<std::vector<DesignRun>>;
 /// The model as learnt from simulations.
 class LearntModel {
  public:
-  /// `widening`: by experiment, of the surfaces' covariance, see forecast.h; empty: 1. Throws
-  /// std::invalid_argument, see ResponseSurface.
+  /// `widening`: by experiment; empty: none. Throws std::invalid_argument, see ResponseSurface.
   LearntModel(const ModelSpace& space, const std::vector<std::string>& experiments, const DesignRuns& runs,
-              std::vector<double> widening = {});
+              std::vector<Widening> widening = {});
   /// Of all values, in their order.
   SurfacePrediction at(const ModelPoint& point) const;
+  /// Covariance of one run of each experiment about its mean: between seeds.
+  Eigen::MatrixXd scatter() const;
   std::vector<const ResponseSurface*> surfaces() const;
 
  private:
   std::vector<ResponseSurface> surfaces_;
-  std::vector<double> widening_;
+  std::vector<Widening> widening_;
 };
 
 /// Effects of hypotheses that full simulations have contradicted, however well surfaces fit; empty: those of
 /// the base model alone.
 using Contradicted = std::set<std::vector<std::size_t>>;
 
-/// Finds, re-calibrates and names. Pairs are tried where no effect explains the data that is not contradicted
-/// and more probable than something unknown.
+/// When two effects at once are tried: where none explains the data that is not contradicted and more
+/// probable than something unknown; or whatever one of them does.
+enum class Pairs { where_none_explains, always };
+
+/// Finds, re-calibrates and names. `before`: of the same measurements and model, whose judgements are taken
+/// over.
 Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model,
-                   const Contradicted& contradicted = {});
+                   const Contradicted& contradicted = {}, Pairs pairs = Pairs::where_none_explains,
+                   const Diagnosis* before = nullptr);
 
 /// Where simulations were done: those that gave the numbers, and those that failed or did not.
 struct SimulatedPoints {

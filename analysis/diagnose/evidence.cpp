@@ -132,17 +132,47 @@ Proposal proposal_of(const std::vector<Sample>& samples, const std::vector<doubl
 
 }  // namespace
 
-double Evidence::quantile(Eigen::Index parameter, double share) const {
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(samples.rows()));
+namespace {
+
+// Indices of samples, by rising parameter.
+std::vector<Eigen::Index> by_parameter(const Evidence& evidence, Eigen::Index parameter) {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(evidence.samples.rows()));
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-            [&](Eigen::Index a, Eigen::Index b) { return samples(a, parameter) < samples(b, parameter); });
+  std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return evidence.samples(a, parameter) < evidence.samples(b, parameter);
+  });
+  return order;
+}
+
+}  // namespace
+
+double Evidence::quantile(Eigen::Index parameter, double share) const {
+  const std::vector<Eigen::Index> order = by_parameter(*this, parameter);
   double sum = 0;
   for (const Eigen::Index k : order) {
     sum += weights[k];
     if (sum >= share) return samples(k, parameter);
   }
   return samples(order.back(), parameter);
+}
+
+Evidence::Range Evidence::shortest(Eigen::Index parameter, double share) const {
+  constexpr double kAtTheEnd = 0.01;  // of the box's width
+  const std::vector<Eigen::Index> order = by_parameter(*this, parameter);
+  const double first = box.low[parameter], last = box.high[parameter], width = last - first;
+  Range range{first, last};
+  double within = 0;  // probability of samples from k to before next
+  std::size_t next = 0;
+  for (const Eigen::Index k : order) {
+    while (next < order.size() && within < share) within += weights[order[next++]];
+    if (within < share) break;
+    const Range here{samples(k, parameter), samples(order[next - 1], parameter)};
+    if (here.high - here.low < range.high - range.low) range = here;
+    within -= weights[k];
+  }
+  if (range.low - first < kAtTheEnd * width) range.low = first;
+  if (last - range.high < kAtTheEnd * width) range.high = last;
+  return range;
 }
 
 Evidence integrate(const std::function<double(const Eigen::VectorXd&)>& log_likelihood,
@@ -206,6 +236,7 @@ Evidence integrate(const std::function<double(const Eigen::VectorXd&)>& log_like
     }
   }
   Evidence evidence;
+  evidence.box = box;
   double best = -std::numeric_limits<double>::infinity();
   for (const Sample& s : last)
     if (s.log_likelihood > best) {

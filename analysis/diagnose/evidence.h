@@ -17,9 +17,16 @@ struct Evidence {
   Eigen::VectorXd most_likely;  ///< of the samples
   Eigen::MatrixXd samples;      ///< a row each
   Eigen::VectorXd weights;      ///< sum to 1
+  ParameterBox box;
 
   /// Below which a share of the probability of one parameter lies.
   double quantile(Eigen::Index parameter, double share) const;
+  /// The shortest range that holds a share of the probability of one parameter: what is most probable is in
+  /// it, also at the end of a range. Ends nearer to the box's than a hundredth of its width are the box's.
+  struct Range {
+    double low, high;
+  };
+  Range shortest(Eigen::Index parameter, double share) const;
 };
 
 /// Integrates exp(log_likelihood) over the box by adaptive importance sampling, from the prior to the

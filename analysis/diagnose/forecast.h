@@ -11,9 +11,18 @@ struct Forecast {
   double square = 0;    ///< of the error that came out, the scatter of the simulations included
 };
 
-/// Factor, at least 1, by which the covariance of a surface is to be multiplied so that it foretells its
-/// errors: the most probable one, with the errors normal, and of a log-normal prior (median 1.5, a factor of
-/// 2 one standard deviation). Polynomials through few runs are surer of themselves than they are good.
-double widening(const std::vector<Forecast>& forecasts);
+/// Factors, at least 1, by which the scatter between seeds and the covariance of a surface are to be
+/// multiplied so that it foretells its errors.
+struct Widening {
+  double scatter = 1, covariance = 1;
+};
+
+/// The most probable ones, with the errors normal of variance g (1 + f v): g widens the scatter, and g f the
+/// covariance, which is in its unit. g is that of directions of which the surface knows all, differences
+/// between seeds at one point: simulations scatter otherwise where they are drawn to than over the design. f
+/// is that of directions of which it knows more than half a simulation tells, as it does of what it fits.
+/// A priori both are log-normal (medians 1 and 1.5): polynomials through few runs are surer of themselves
+/// than they are good.
+Widening widening(const std::vector<Forecast>& forecasts);
 
 }  // namespace scree

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 
@@ -14,7 +15,8 @@ namespace {
 // Prior standard deviations of coefficients, over the size of their group.
 constexpr double kBase1 = 1, kBase2 = 0.5, kBase11 = 0.5, kBase3 = 0.3;
 constexpr double kEffect1 = 1, kEffect2 = 0.6, kEffect3 = 0.4, kWithBase = 0.5, kWithBase2 = 0.5,
-                 kWithOther = 0.5, kWithOther2 = 0.3, kTogether = 0.5;
+                 kWithOther = 0.5, kWithOther2 = 0.3;
+constexpr double kTogether = 0.5, kTogether2 = 0.3, kTogetherWithBase = 0.3, kTogetherHat = 0.3;
 constexpr double kHat = 1, kHatWithBase = 0.5, kHatWithBase2 = 0.3;
 constexpr int kHats = 8;           // along an amplitude, each an eighth of the range wide to either side
 constexpr double kConstant = 1e4;  // of the scatter
@@ -61,6 +63,13 @@ double hat(double along, int knot) {
   return std::max(0.0, 1 - std::abs(kHats * along - knot));
 }
 
+std::vector<int> knots(const CandidateEffect& effect) {
+  std::vector<int> all;
+  for (int knot = -kHats; knot <= kHats; ++knot)
+    if (knot < 0 ? effect.lowest() < 0 : knot > 0 && effect.highest() > 0) all.push_back(knot);
+  return all;
+}
+
 double power(double x, int n) {
   double product = 1;
   for (int k = 0; k < n; ++k) product *= x;
@@ -75,7 +84,7 @@ int ResponseSurface::least_base_runs(std::size_t base_parameters) {
 }
 
 void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<DesignRun>& runs) {
-  const std::size_t p = space.base.size();
+  const std::size_t p = base_axes_ = space.base.size();
   const std::vector<int> none(p, 0);
   const auto base = [&](double prior, std::initializer_list<std::size_t> axes) {
     Term term{0, prior, none};
@@ -119,9 +128,7 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
       add(kWithOther, 1, static_cast<int>(k));
       add(kWithOther2, 2, static_cast<int>(k));
     }
-    for (int knot = -kHats; knot <= kHats; ++knot) {  // what belongs to one knot stands together
-      if (knot == 0 || (knot < 0 ? space.effects[e].lowest() >= 0 : space.effects[e].highest() <= 0))
-        continue;
+    for (const int knot : knots(space.effects[e])) {  // what belongs to one knot stands together
       const auto add_hat = [&](double prior) -> Term& {
         terms_.push_back({group + static_cast<int>(space.effects.size()), prior, none, effect});
         terms_.back().hat = knot;
@@ -136,40 +143,71 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
   }
   groups_ = 1 + 2 * static_cast<int>(space.effects.size());
   first_of_pairs_ = terms_.size();
-  for (const auto& [a, b] : together) terms_.push_back({groups_++, kTogether, none, a, 1, 0, b});
+  for (const auto& [a, b] : together) {
+    const std::vector<Term> pair = terms_of_pair(a, b, groups_++);
+    terms_.insert(terms_.end(), pair.begin(), pair.end());
+  }
   known_pairs_.assign(together.begin(), together.end());
+  for (int b = 0; b < std::ssize(effects_); ++b)
+    for (int a = 0; a < b; ++a)
+      if (acts_[static_cast<std::size_t>(a)] && acts_[static_cast<std::size_t>(b)] &&
+          !together.contains({a, b}))
+        unknown_pairs_.emplace(std::pair(a, b), terms_of_pair(a, b, -1));
 }
 
-double ResponseSurface::along(const EffectAt& effect) const {
-  return effects_[effect.effect].along(effect.amplitude());
+std::vector<ResponseSurface::Term> ResponseSurface::terms_of_pair(int effect, int second, int group) const {
+  std::vector<Term> terms;
+  const auto add = [&](double prior, int order, int order_of_second) -> Term& {
+    Term term{group, prior, std::vector<int>(base_axes_, 0), effect, order};
+    term.second = second;
+    term.second_power = order_of_second;
+    return terms.emplace_back(std::move(term));
+  };
+  add(kTogether, 1, 1);
+  add(kTogether2, 2, 1);
+  add(kTogether2, 1, 2);
+  for (std::size_t i = 0; i < base_axes_; ++i) add(kTogetherWithBase, 1, 1).base_power[i] = 1;
+  for (const int knot : knots(effects_[static_cast<std::size_t>(effect)])) add(kTogetherHat, 0, 1).hat = knot;
+  for (const int knot : knots(effects_[static_cast<std::size_t>(second)]))
+    add(kTogetherHat, 1, 0).second_hat = knot;
+  return terms;
+}
+
+ResponseSurface::There ResponseSurface::there(const EffectAt& effect) const {
+  return {&effect, effects_[effect.effect].along(effect.amplitude())};
+}
+
+double ResponseSurface::value_of(const Term& term, const Eigen::VectorXd& base, const There& effect,
+                                 const There& second) {
+  double product = 1;
+  if (term.effect >= 0)
+    product = term.hat != 0 ? hat(effect.along, term.hat) : power(effect.along, term.power);
+  if (term.other > 0) product *= effect.effect->at[term.other];
+  if (term.second >= 0)
+    product *=
+        term.second_hat != 0 ? hat(second.along, term.second_hat) : power(second.along, term.second_power);
+  if (product == 0) return 0;
+  for (std::size_t i = 0; i < term.base_power.size(); ++i)
+    product *= power(base[static_cast<Eigen::Index>(i)], term.base_power[i]);
+  return product;
 }
 
 ResponseSurface::Values ResponseSurface::values(const ModelPoint& point) const {
   Values all;
-  struct There {
-    const EffectAt* effect = nullptr;
-    double along = 0;
-  };
-  std::array<There, 64> there{};
+  const There absent;
+  std::array<There, 64> those{};
   for (const EffectAt& effect : point.effects)
-    if (acts_[effect.effect] && effect.amplitude() != 0) there[effect.effect] = {&effect, along(effect)};
+    if (acts_[effect.effect] && effect.amplitude() != 0) those[effect.effect] = there(effect);
+  const auto of = [&](int effect) -> const There& {
+    return effect < 0 ? absent : those[static_cast<std::size_t>(effect)];
+  };
   const auto add = [&](std::size_t t) {
     const Term& term = terms_[t];
-    double product = 1;
-    if (term.effect >= 0) {
-      const There& effect = there[static_cast<std::size_t>(term.effect)];
-      if (effect.effect == nullptr) return;
-      product = term.hat != 0 ? hat(effect.along, term.hat) : power(effect.along, term.power);
-      if (product == 0) return;
-      if (term.other > 0) product *= effect.effect->at[term.other];
-    }
-    if (term.second >= 0) {
-      const There& effect = there[static_cast<std::size_t>(term.second)];
-      if (effect.effect == nullptr) return;
-      product *= effect.along;
-    }
-    for (std::size_t i = 0; i < term.base_power.size(); ++i)
-      product *= power(point.base[static_cast<Eigen::Index>(i)], term.base_power[i]);
+    const There &effect = of(term.effect), &second = of(term.second);
+    if ((term.effect >= 0 && effect.effect == nullptr) || (term.second >= 0 && second.effect == nullptr))
+      return;
+    const double product = value_of(term, point.base, effect, second);
+    if (product == 0) return;
     const auto here = static_cast<Eigen::Index>(t);
     if (all.which.empty() || all.which.back() != here - 1)
       all.stretches.push_back({here, std::ssize(all.which), 0});
@@ -180,7 +218,7 @@ ResponseSurface::Values ResponseSurface::values(const ModelPoint& point) const {
   const std::size_t first = first_of_effect_.empty() ? first_of_pairs_ : first_of_effect_.front();
   for (std::size_t t = 0; t < first; ++t) add(t);
   for (std::size_t e = 0; e < first_of_effect_.size(); ++e) {
-    if (there[e].effect == nullptr) continue;
+    if (those[e].effect == nullptr) continue;
     const std::size_t end = e + 1 < first_of_effect_.size() ? first_of_effect_[e + 1] : first_of_pairs_;
     for (std::size_t t = first_of_effect_[e]; t < end; ++t) add(t);
   }
@@ -384,10 +422,13 @@ std::vector<ResponseSurface::Product> ResponseSurface::unknown_products(const Mo
   std::vector<Product> all;
   for (const EffectAt& a : point.effects)
     for (const EffectAt& b : point.effects) {
-      if (a.effect >= b.effect || !acts_[a.effect] || !acts_[b.effect]) continue;
       const std::pair<int, int> pair(static_cast<int>(a.effect), static_cast<int>(b.effect));
-      if (std::find(known_pairs_.begin(), known_pairs_.end(), pair) == known_pairs_.end())
-        all.push_back({pair, kTogether * along(a) * along(b)});
+      const auto terms = unknown_pairs_.find(pair);
+      if (terms == unknown_pairs_.end()) continue;
+      Product product{pair, {}};
+      for (const Term& term : terms->second)
+        product.values.push_back(term.prior * value_of(term, point.base, there(a), there(b)));
+      all.push_back(std::move(product));
     }
   return all;
 }
@@ -398,31 +439,33 @@ double ResponseSurface::pair_covariance(const std::vector<Product>& first, const
   for (const Product& one : first)
     for (const Product& other : second)
       if (one.pair == other.pair)
-        sum +=
-            one.value * other.value * size_of(fit.size, one.pair.first) * size_of(fit.size, one.pair.second);
+        sum += std::inner_product(one.values.begin(), one.values.end(), other.values.begin(), 0.0) *
+               size_of(fit.size, one.pair.first) * size_of(fit.size, one.pair.second);
   return sum;
 }
 
 SurfacePrediction ResponseSurface::at(const ModelPoint& point) const {
+  using Segment = Eigen::Map<const Eigen::VectorXd>;
   const Values here = values(point);
-  const Eigen::Map<const Eigen::VectorXd> value(here.value.data(), std::ssize(here.value));
+  const Segment value(here.value.data(), std::ssize(here.value));
   const std::vector<Product> unknown = unknown_products(point);
   const Eigen::Index p = outputs();
   Eigen::VectorXd mean(p), variance(p);
   for (Eigen::Index j = 0; j < p; ++j) {
     const Fit& fit = fits_[static_cast<std::size_t>(j)];
+    const Eigen::Index rows = fit.covariance.rows();
     double sum = 0, square = 0;
-    for (std::size_t s = 0; s < here.stretches.size(); ++s) {
-      const Values::Stretch& a = here.stretches[s];
-      const auto of_a = value.segment(a.at, a.count);
-      sum += of_a.dot(fit.mean.segment(a.term, a.count));
-      for (std::size_t t = 0; t <= s; ++t) {
-        const Values::Stretch& b = here.stretches[t];
-        const double part =
-            (fit.covariance.block(a.term, b.term, a.count, b.count) * value.segment(b.at, b.count)).dot(of_a);
-        square += t < s ? 2 * part : part;
+    for (auto a = here.stretches.begin(); a != here.stretches.end(); ++a)
+      for (Eigen::Index i = 0; i < a->count; ++i) {
+        // The covariance is symmetric: a column as far as its diagonal.
+        const double* column = fit.covariance.data() + (a->term + i) * rows;
+        double before = column[a->term + i] * value[a->at + i] * 0.5;
+        for (auto b = here.stretches.begin(); b != a; ++b)
+          before += Segment(column + b->term, b->count).dot(Segment(value.data() + b->at, b->count));
+        before += Segment(column + a->term, i).dot(Segment(value.data() + a->at, i));
+        square += 2 * value[a->at + i] * before;
+        sum += value[a->at + i] * fit.mean[a->term + i];
       }
-    }
     mean[j] = sum;
     variance[j] = square + fit.scatter * pair_covariance(unknown, unknown, fit);
   }

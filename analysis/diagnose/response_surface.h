@@ -4,16 +4,19 @@
 //
 // Each output is a sum of terms with Gaussian priors on their coefficients: a polynomial of third order in
 // the base parameters; of each effect one of third order in how far along its amplitude is, products of that
-// with the base parameters, with the effect's other parameters and with other effects; and hats along the
+// with the base parameters and with the effect's other parameters; and hats along the
 // amplitude, each alone and times the base parameters and their squares, because an effect may do most of
-// what it can at the bottom of its range and something else further up. An effect that is absent changes
-// nothing. How large the coefficients of the base and of each effect are a priori, and how large the scatter
-// is, are those of the largest marginal likelihood. Readings of one pile share nearly all of their scatter.
-// Outputs of one run are correlated: the polynomials are those of combinations of the outputs whose scatter
-// is not. Source: Rasmussen & Williams, Gaussian Processes for Machine Learning (2006), 2.1 and 5.4; Higdon
-// et al., J. Am. Stat. Assoc. 103 (2008), for several outputs.
+// what it can at the bottom of its range and something else further up. What two effects do together is the
+// product of how far along they are, that times each of them and each base parameter, and times hats along
+// either. An effect that is absent changes nothing. How large the coefficients of the base and of each effect
+// are a priori, and how large the scatter is, are those of the largest marginal likelihood. Readings of one
+// pile share nearly all of their scatter. Outputs of one run are correlated: the polynomials are those of
+// combinations of the outputs whose scatter is not. Source: Rasmussen & Williams, Gaussian Processes for
+// Machine Learning (2006), 2.1 and 5.4; Higdon et al., J. Am. Stat. Assoc. 103 (2008), for several outputs.
 #include <Eigen/Dense>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/diagnose/forecast.h"
@@ -61,11 +64,20 @@ class ResponseSurface {
     std::vector<int> base_power;  // by base axis
     int effect = -1, power = 0;   // of how far along its amplitude is
     int other = 0;                // a further parameter of the effect, from 1; 0: none
-    int second = -1;              // the other effect of a product
     int hat = 0;                  // not 0: in place of a power, the hat at this knot
+    int second = -1;              // the other effect of a product
+    int second_power = 0, second_hat = 0;
   };
   void make_terms(const ModelSpace& space, const std::vector<DesignRun>& runs);
-  double along(const EffectAt& effect) const;  // see CandidateEffect::along
+  std::vector<Term> terms_of_pair(int effect, int second, int group) const;
+  struct There {  // an effect that is
+    const EffectAt* effect = nullptr;
+    double along = 0;  // see CandidateEffect::along
+  };
+  There there(const EffectAt& effect) const;
+  // Of a term whose effects are there; the second of a product only.
+  static double value_of(const Term& term, const Eigen::VectorXd& base, const There& effect,
+                         const There& second);
   // The terms that do not vanish at a point, and their values.
   struct Values {
     std::vector<Eigen::Index> which;
@@ -102,10 +114,11 @@ class ResponseSurface {
   Fit fit(const Features& features, const Eigen::VectorXd& y, bool whole) const;
   // How large all that an effect does is a priori: polynomial and hats.
   double size_of(const Eigen::VectorXd& size, int effect) const;
-  // Products of effects that were never simulated together, and their covariance, over the scatter.
+  // Terms of effects that were never simulated together, times their priors; and the covariance, over the
+  // scatter.
   struct Product {
     std::pair<int, int> pair;
-    double value;
+    std::vector<double> values;
   };
   std::vector<Product> unknown_products(const ModelPoint& point) const;
   double pair_covariance(const std::vector<Product>& first, const std::vector<Product>& second,
@@ -113,7 +126,9 @@ class ResponseSurface {
 
   std::vector<bool> acts_;  // by effect of the space
   std::vector<CandidateEffect> effects_;
-  std::vector<std::pair<int, int>> known_pairs_;  // of effects that were simulated together
+  std::vector<std::pair<int, int>> known_pairs_;                    // of effects that were simulated together
+  std::map<std::pair<int, int>, std::vector<Term>> unknown_pairs_;  // that were not, and could be
+  std::size_t base_axes_ = 0;
   int groups_ = 1;
   std::vector<Term> terms_;  // of the base, of each effect, of pairs
   std::vector<std::size_t> first_of_effect_;

@@ -21,6 +21,8 @@ constexpr std::uint64_t kBaseSeeds = 500'000, kEffectSeeds = 510'000, kCheckSeed
 constexpr std::uint64_t kSeedsOfOneEffect = 1000;
 constexpr double kRivalBy = 20;  // ratio of probabilities up to which a rival is simulated, too
 constexpr std::size_t kMostRivals = 2;
+constexpr double kSpread = 0.5;       // power of probabilities by which rivals share simulations
+constexpr int kRoundsOfPairs = 1;     // over those of single effects
 constexpr double kMoved = 0.1;        // distance over which a fit has moved, and is simulated anew
 constexpr std::size_t kMostNext = 5;  // measurements proposed
 
@@ -111,6 +113,28 @@ std::vector<const Judgement*> worth_simulating(const Diagnosis& d) {
       named != nullptr && std::find(all.begin(), all.end(), named) == all.end())
     all.push_back(named);
   return all;
+}
+
+// How many of so many simulations go to which rival of the leading hypothesis: by their probabilities, its
+// own among them, to the power kSpread, as what is learnt from of one is spread wider than what is open of
+// it.
+std::vector<std::pair<const Judgement*, int>> shared_by_rivals(const Diagnosis& d, const Judgement& leading,
+                                                               int count) {
+  const auto weight = [&](const Judgement& j) {
+    return j.hypothesis.effects.empty() ? 0.0 : std::pow(j.probability, kSpread);
+  };
+  double all = 0, sum = 0;
+  for (const Judgement& j : d.judgements) all += weight(j);
+  std::vector<std::pair<const Judgement*, int>> shares;
+  int given = 0;
+  for (const Judgement& j : d.judgements) {
+    if (&j == &leading || weight(j) == 0) continue;
+    sum += weight(j) / all;
+    const int share = static_cast<int>(sum * count + 0.5) - given;
+    if (share > 0) shares.emplace_back(&j, share);
+    given += share;
+  }
+  return shares;
 }
 
 }  // namespace
@@ -250,11 +274,12 @@ std::vector<ExperimentRuns> DiagnosisSession::in_every_experiment(
 }
 
 int DiagnosisSession::most_further() const {
-  // A round simulates the calibrated model, the leading effect, its rivals, and what would be named; the end
-  // what is named.
-  const int points = (3 + static_cast<int>(kMostRivals)) * model_.simulations.rounds + 1;
+  // A round simulates the calibrated model, the leading effect, its rivals, and what would be named, and what
+  // the data leave open of them; the end what is named. Pairs have rounds of their own.
+  const int rounds = (1 + kRoundsOfPairs) * model_.simulations.rounds,
+            points = (3 + static_cast<int>(kMostRivals)) * rounds + 1;
   return static_cast<int>(design_.size()) *
-         (points * model_.simulations.check + model_.simulations.rounds * model_.simulations.effect);
+         (points * model_.simulations.check + 2 * rounds * model_.simulations.effect);
 }
 
 void DiagnosisSession::learn_from(const std::vector<ExperimentRuns>& runs, const RunThrough& run,
@@ -424,7 +449,7 @@ SimulatedModel DiagnosisSession::nominal_of_design() const {
 }
 
 LearntModel DiagnosisSession::learn() const {
-  std::vector<double> factors;
+  std::vector<Widening> factors;
   for (const auto& of_one : forecasts_) factors.push_back(widening(of_one));
   try {
     return {space_, data_.measured.experiments, learnt_, factors};
@@ -454,18 +479,22 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   LearntModel model = learn();
   Diagnosis d = diagnose(space_, data_.measured, model);
   using Effects = std::vector<std::size_t>;
-  std::map<Effects, SimulatedModel> shown;  // the last of each hypothesis
+  std::map<Effects, std::vector<SimulatedModel>> simulated_of;  // by hypothesis, the last one last
   std::map<Effects, std::string> not_to_be_shown;
+  const auto shown = [&](const Judgement& j) -> const SimulatedModel* {
+    const auto there = simulated_of.find(j.hypothesis.effects);
+    return there == simulated_of.end() ? nullptr : &there->second.back();
+  };
   const auto is_shown = [&](const Judgement& j) {
     if (not_to_be_shown.contains(j.hypothesis.effects)) return true;
-    const auto there = shown.find(j.hypothesis.effects);
-    return there != shown.end() && space_.distance(there->second.at, j.best) <= kMoved;
+    const SimulatedModel* there = shown(j);
+    return there != nullptr && space_.distance(there->at, j.best) <= kMoved;
   };
   // Whether there was anything to simulate.
   const auto show = [&](const Judgement& j) {
     if (is_shown(j)) return false;
     try {
-      shown.insert_or_assign(j.hypothesis.effects, simulate(j.best, run, outcome));
+      simulated_of[j.hypothesis.effects].push_back(simulate(j.best, run, outcome));
     } catch (const TooFewRuns& error) {
       if (j.hypothesis.effects.empty()) throw;
       not_to_be_shown.emplace(j.hypothesis.effects, error.what());
@@ -474,15 +503,23 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     }
     return true;
   };
-  const auto gap_shown = [&](const Judgement& j) {
-    const SimulatedModel& simulated = shown.at(j.hypothesis.effects);
-    return simulated_gap(d, model, simulated.mean, simulated.runs);
+  const auto gap_of = [&](const SimulatedModel& each) {
+    return simulated_gap(d, model, each.mean, each.runs);
   };
   // Simulations at the fitted values do not give the data, whatever surfaces say.
   const auto contradicts = [&](const Judgement& j) {
-    const auto there = shown.find(j.hypothesis.effects);
-    return there != shown.end() && space_.distance(there->second.at, j.best) <= kMoved &&
-           gap_shown(j).p <= kFitsAbove;
+    return shown(j) != nullptr && space_.distance(shown(j)->at, j.best) <= kMoved &&
+           gap_of(*shown(j)).p <= kFitsAbove;
+  };
+  // Of all models with these effects that were simulated, the one that gives the data best.
+  const auto best_shown = [&](const Judgement& j) -> const SimulatedModel* {
+    const auto there = simulated_of.find(j.hypothesis.effects);
+    if (there == simulated_of.end()) return nullptr;
+    return &*std::max_element(there->second.begin(), there->second.end(),
+                              [&](const auto& a, const auto& b) { return gap_of(a).p < gap_of(b).p; });
+  };
+  const auto borne_out = [&](const Judgement& j) {
+    return best_shown(j) != nullptr && gap_of(*best_shown(j)).p > kFitsAbove;
   };
   const auto contradicted = [&] {
     Contradicted all;
@@ -495,12 +532,26 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   };
   Contradicted without;
   outcome.settled = d.verdict.kind == DiagnosisVerdict::Kind::nothing;
-  for (int round = 0; round < model_.simulations.rounds && !outcome.settled; ++round) {
-    ++outcome.rounds;
+  int last_round = model_.simulations.rounds;
+  Pairs pairs = Pairs::where_none_explains;
+  while (!outcome.settled) {
     if (Contradicted now = contradicted(); now != without) {
       without = std::move(now);
-      d = diagnose(space_, data_.measured, model, without);
+      d = diagnose(space_, data_.measured, model, without, pairs, &d);
     }
+    // Once a pair leads they stay, and have rounds of their own: there are many of them, and little was
+    // simulated of each.
+    if (const Judgement* best = best_effect(d);
+        pairs != Pairs::always && best != nullptr && best->hypothesis.effects.size() > 1) {
+      pairs = Pairs::always;
+      last_round = outcome.rounds + kRoundsOfPairs * model_.simulations.rounds;
+    }
+    // What is named on and on, and not borne out by its own simulations, is fitted to them again.
+    if (const Judgement* named = named_first(d);
+        outcome.rounds >=
+        last_round + (named != nullptr && !borne_out(*named) ? model_.simulations.rounds : 0))
+      break;
+    ++outcome.rounds;
     std::vector<std::size_t> known;
     for (const auto& runs : learnt_) known.push_back(runs.size());
     bool fresh = show(d.calibration);
@@ -508,9 +559,14 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
       const std::vector<const Judgement*> worth = worth_simulating(d);
       for (const Judgement* j : worth)
         if (show(*j)) fresh = true;
-      if (const Judgement& leading = *worth.front(); shown.contains(leading.hypothesis.effects)) {
-        explore(where_to_learn(space_, d, model, leading.hypothesis, model_.simulations.effect, simulated()),
-                run, outcome);
+      if (const Judgement& leading = *worth.front(); shown(leading) != nullptr) {
+        std::vector<ModelPoint> points =
+            where_to_learn(space_, d, model, leading.hypothesis, model_.simulations.effect, simulated());
+        for (const auto& [rival, count] : shared_by_rivals(d, leading, model_.simulations.effect))
+          if (!not_to_be_shown.contains(rival->hypothesis.effects))
+            for (ModelPoint& at : where_to_learn(space_, d, model, rival->hypothesis, count, simulated()))
+              points.push_back(std::move(at));
+        explore(points, run, outcome);
         fresh = true;
       }
     }
@@ -520,28 +576,32 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     }
     compare(model, known);
     model = learn();
-    Diagnosis again = diagnose(space_, data_.measured, model, without);
+    Diagnosis again = diagnose(space_, data_.measured, model, without, pairs);
     const bool unchanged = same(d.verdict, again.verdict, d, again);
     d = std::move(again);
     outcome.settled = unchanged && is_shown(d.calibration);
     for (const Judgement* j : {best_effect(d), named_first(d)})
       if (j != nullptr && not_calibration()) outcome.settled = outcome.settled && is_shown(*j);
   }
-  // What its own simulations contradict, those of the last fit and fresh ones, is not said.
+  // What its own simulations contradict is not said: those of the last fit and fresh ones, and, of effects,
+  // those of every fit before. One model with the effects that gives the data is enough.
   const auto stands = [&](std::size_t k) {
     const Judgement& j = d.judgements[k];
+    const auto gives_the_data = [&] {
+      return !contradicts(j) || (!j.hypothesis.effects.empty() && borne_out(j));
+    };
     show(j);
     if (not_to_be_shown.contains(j.hypothesis.effects)) {
       refute(d, k, std::nullopt);
       return false;
     }
-    if (!contradicts(j)) return true;
+    if (gives_the_data()) return true;
     try {
-      shown.insert_or_assign(j.hypothesis.effects, simulate(j.best, run, outcome));
-      if (!contradicts(j)) return true;
+      simulated_of[j.hypothesis.effects].push_back(simulate(j.best, run, outcome));
+      if (gives_the_data()) return true;
     } catch (const TooFewRuns&) {
     }
-    const Gap gap = gap_shown(j);
+    const Gap gap = gap_of(*shown(j));
     outcome.notes.push_back(fmt::format(
         "{}: full simulations with the fitted values do not give the data (p = {:.2g}); it is no answer",
         name_of(space_, j.hypothesis), gap.p));
@@ -558,13 +618,13 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     tried = stands(d.verdict.named[tried]) ? tried + 1 : 0;
   outcome.nominal = nominal_of_design();
   outcome.nominal.gap = simulated_gap(d, model, outcome.nominal.mean, std::max(outcome.nominal.runs, 1));
-  if (const auto calibrated = shown.find({}); calibrated != shown.end()) {
-    outcome.calibrated = calibrated->second;
-    outcome.calibrated->gap = gap_shown(d.calibration);
+  if (const SimulatedModel* calibrated = shown(d.calibration)) {
+    outcome.calibrated = *calibrated;
+    outcome.calibrated->gap = gap_of(*calibrated);
   }
   if (const Judgement* named = named_first(d)) {
-    outcome.augmented = shown.at(named->hypothesis.effects);
-    outcome.augmented->gap = gap_shown(*named);
+    outcome.augmented = *best_shown(*named);
+    outcome.augmented->gap = gap_of(*best_shown(*named));
     outcome.held_out_calibrated = held_out(space_, d, model, {{}, false, 0});
     outcome.held_out_augmented = held_out(space_, d, model, named->hypothesis);
   }

@@ -235,7 +235,7 @@ TEST(Verdict, NamesNothingThatIsLessProbableThanCalibration) {
 // A surface that is less sure of itself leaves an amplitude more open.
 TEST_F(DiagnosisOf, WiderSurfacesGiveWiderIntervals) {
   const Measurements measured = world.measure(SyntheticWorld::point(0.1, 0.1, {{1, 0.6}}), 50, 3);
-  const LearntModel wider(world.space, world.experiments, world.design(1), {4, 4});
+  const LearntModel wider(world.space, world.experiments, world.design(1), {{1, 4}, {1, 4}});
   const auto width = [&](const LearntModel& learnt) {
     const Diagnosis d = diagnose(world.space, measured, learnt);
     for (const Judgement& j : d.judgements)
@@ -280,6 +280,23 @@ TEST(Evidence, OfAGaussianIsItsIntegral) {
       EXPECT_NEAR(e.quantile(1, 0.95), 1.645 * s, 0.2 * s) << s;
     }
   }
+}
+
+// exp(-x / s) from 0 on: nine tenths of it are the shortest between 0 and s log 10, and 0 is the most
+// probable of all. The same the other way round.
+TEST(Evidence, TheShortestRangeBeginsWhereTheMostProbableLies) {
+  constexpr double s = 0.1;
+  const ParameterBox box{Eigen::VectorXd::Zero(2), Eigen::VectorXd::Ones(2)};
+  const Evidence e = integrate([&](const Eigen::VectorXd& x) { return -(x[0] + 1 - x[1]) / s; }, box, 5);
+  const Evidence::Range first = e.shortest(0, 0.9), second = e.shortest(1, 0.9);
+  EXPECT_EQ(first.low, 0);
+  EXPECT_NEAR(first.high, s * std::log(10), 0.15 * s * std::log(10));
+  EXPECT_EQ(second.high, 1);
+  EXPECT_NEAR(second.low, 1 - s * std::log(10), 0.15 * s * std::log(10));
+  const Evidence middle = integrate(
+      [&](const Eigen::VectorXd& x) { return -50 * (x.array() - 0.5).matrix().squaredNorm(); }, box, 5);
+  EXPECT_NEAR(middle.shortest(0, 0.9).low, 0.5 - 1.645 * 0.1, 0.03);
+  EXPECT_NEAR(middle.shortest(0, 0.9).high, 0.5 + 1.645 * 0.1, 0.03);
 }
 
 TEST(Evidence, FindsBothOfTwoModes) {
@@ -452,6 +469,56 @@ TEST(ResponseSurface, FollowsAnEffectThatActsAtTheBottomOfItsRange) {
   }
   EXPECT_LT(std::sqrt(error / count), 0.3);
   EXPECT_LT(square / count, 2.5);
+}
+
+// Two effects that do less together the more there is of the first, and more on one side of the base
+// parameter. What is learnt from some simulations of both holds beside them, and before there is any the
+// surface says that it does not know.
+TEST(ResponseSurface, FollowsTwoEffectsThatActOnEachOther) {
+  ModelSpace space;
+  space.base = {{"material.mu", 0, -1, 1}};
+  space.effects = {{"sticky", "sticky", 0, {{"effects.sticky.size", "", 0, 1}}, {"one"}},
+                   {"rough", "rough", 0, {{"effects.rough.size", "", 0, 1}}, {"one"}}};
+  const auto truth = [](double base, double a, double b) {
+    return 2 * base + 3 * std::sqrt(a) + 2 * std::sqrt(b) -
+           3 * std::sqrt(a * b) * (1 - 0.8 * std::sqrt(a)) * (1 + 0.7 * base);
+  };
+  double before = 0, after = 0, error = 0;
+  int count = 0;
+  for (std::uint64_t world = 0; world < 20; ++world) {
+    Random random(world, 0, RandomPurpose::design);
+    std::vector<DesignRun> runs;
+    const auto point = [](double base, double a, double b) {
+      ModelPoint at{Eigen::VectorXd::Constant(1, base), {}};
+      if (a != 0) at.effects.push_back({0, Eigen::VectorXd::Constant(1, a)});
+      if (b != 0) at.effects.push_back({1, Eigen::VectorXd::Constant(1, b)});
+      return at;
+    };
+    const auto add = [&](double a, double b) {
+      const double base = random.uniform(-1, 1);
+      runs.push_back(
+          {point(base, a, b), Eigen::VectorXd::Constant(1, truth(base, a, b) + 0.2 * random.uniform(-1, 1))});
+    };
+    for (int k = 0; k < 24; ++k) add(0, 0);
+    for (int k = 1; k <= 20; ++k) add(k * k / 400.0, 0), add(0, k * k / 400.0);
+    const ResponseSurface without(space, "one", runs);
+    for (int k = 0; k < 40; ++k) add(random.uniform(0.01, 1), random.uniform(0.01, 1));
+    const ResponseSurface with(space, "one", runs);
+    for (int k = 0; k < 20; ++k, ++count) {
+      const double base = random.uniform(-0.8, 0.8), a = random.uniform(0.1, 0.9),
+                   b = random.uniform(0.1, 0.9);
+      const auto square = [&](const ResponseSurface& surface) {
+        const SurfacePrediction p = surface.at(point(base, a, b));
+        return std::pow(p.mean[0] - truth(base, a, b), 2) / p.covariance(0, 0);
+      };
+      before += square(without);
+      after += square(with);
+      error += std::pow(with.at(point(base, a, b)).mean[0] - truth(base, a, b), 2);
+    }
+  }
+  EXPECT_LT(before / count, 2.5);
+  EXPECT_LT(after / count, 2.0);
+  EXPECT_LT(std::sqrt(error / count), 0.15);
 }
 
 // Readings of one pile share its scatter: what an effect on measurement does is then known far better than
