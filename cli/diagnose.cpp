@@ -60,7 +60,7 @@ void print_plan(const scree::DiagnosisSession& session, const scree::ResultsStor
     else
       known = to_come.empty() && known;
   }
-  fmt::print("{} simulations, {} of them in the store; then as a rule up to {} more of what is named\n", all,
+  fmt::print("{} simulations, {} of them in the store; then some of what may be named, {} at most\n", all,
              there, session.most_further());
   for (const std::string& note : session.data().notes) fmt::print("note: {}\n", note);
   if (known)

@@ -362,7 +362,7 @@ std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Diagnosis&
 }
 
 Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model,
-                   const Contradicted& contradicted, Pairs when, const Diagnosis* before) {
+                   const Contradicted& contradicted, Pairs pairs_when, const Diagnosis* before) {
   Diagnosis d;
   d.measured = measured;
   const WorkingCovariance working = working_covariance(measured, model.surfaces());
@@ -371,17 +371,17 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
   const Likelihood likelihood(space, model, measured, d.covariance, d.freedom,
                               everything(static_cast<Eigen::Index>(measured.values.size())));
   find(space, model, d);
-  const auto judge = [&](const Hypothesis& h) {
+  const auto judged = [&](const Hypothesis& h) {
     if (before != nullptr)
       for (const Judgement& j : before->judgements)
         if (j.hypothesis.effects == h.effects && j.hypothesis.unknown == h.unknown) return j;
-    return scree::judge(space, likelihood, h);
+    return judge(space, likelihood, h);
   };
-  d.calibration = judge({{}, false, kPriorCalibration});
+  d.calibration = judged({{}, false, kPriorCalibration});
   const std::size_t count = space.effects.size();
   std::vector<Judgement> ones;
   for (std::size_t e = 0; e < count; ++e)
-    ones.push_back(judge({{e}, false, kPriorOne / static_cast<double>(count)}));
+    ones.push_back(judged({{e}, false, kPriorOne / static_cast<double>(count)}));
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -390,7 +390,7 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
   const auto weight = [](const Judgement& j) {
     return std::log(j.hypothesis.prior) + j.evidence.log_evidence;
   };
-  const Judgement unknown = judge({{}, true, kPriorUnknown});
+  const Judgement unknown = judged({{}, true, kPriorUnknown});
   // Two effects are for what none explains alone, or none better than something unknown does.
   const bool one_explains = std::any_of(ones.begin(), ones.end(), [&](const Judgement& j) {
     return j.gap.p > kNothingAbove && !contradicted.contains(j.hypothesis.effects) &&
@@ -398,7 +398,7 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
   });
   const bool calibration_explains = d.calibration.gap.p > kFitsAbove && !contradicted.contains({});
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  if (when == Pairs::always || (!calibration_explains && !one_explains))
+  if (pairs_when == Pairs::always || (!calibration_explains && !one_explains))
     for (std::size_t k = 0; k < std::min(kPairsOfBest, count); ++k)
       for (std::size_t e = 0; e < count; ++e) {
         const std::pair<std::size_t, std::size_t> pair(std::min(order[k], e), std::max(order[k], e));
@@ -407,7 +407,7 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
           pairs.emplace_back(pair);
       }
   const double all_pairs = 0.5 * static_cast<double>(count) * (static_cast<double>(count) - 1);
-  for (const auto& [a, b] : pairs) d.judgements.push_back(judge({{a, b}, false, kPriorTwo / all_pairs}));
+  for (const auto& [a, b] : pairs) d.judgements.push_back(judged({{a, b}, false, kPriorTwo / all_pairs}));
   d.judgements.insert(d.judgements.end(), ones.begin(), ones.end());
   d.judgements.push_back(d.calibration);
   d.judgements.push_back(unknown);

@@ -58,7 +58,7 @@ struct Judgement {
   struct Interval {
     double low, middle, high;
   };
-  std::vector<Interval> base;                  ///< of each base parameter, in its unit: median, shortest 90 %
+  std::vector<Interval> base;  ///< of each base parameter, in its unit: the shortest of 90 %, and the median
   std::vector<std::vector<Interval>> effects;  ///< of each effect's parameters
   /// Root mean square change by the effects as the surfaces have it, in standard uncertainties, after what
   /// the base parameters make up for.
@@ -131,7 +131,7 @@ enum class Pairs { where_none_explains, always };
 /// Finds, re-calibrates and names. `before`: of the same measurements and model, whose judgements are taken
 /// over.
 Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model,
-                   const Contradicted& contradicted = {}, Pairs pairs = Pairs::where_none_explains,
+                   const Contradicted& contradicted = {}, Pairs pairs_when = Pairs::where_none_explains,
                    const Diagnosis* before = nullptr);
 
 /// Where simulations were done: those that gave the numbers, and those that failed or did not.

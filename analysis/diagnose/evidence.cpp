@@ -130,10 +130,6 @@ Proposal proposal_of(const std::vector<Sample>& samples, const std::vector<doubl
   return {box, mean, covariance};
 }
 
-}  // namespace
-
-namespace {
-
 // Indices of samples, by rising parameter.
 std::vector<Eigen::Index> by_parameter(const Evidence& evidence, Eigen::Index parameter) {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(evidence.samples.rows()));

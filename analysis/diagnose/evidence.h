@@ -21,11 +21,12 @@ struct Evidence {
 
   /// Below which a share of the probability of one parameter lies.
   double quantile(Eigen::Index parameter, double share) const;
-  /// The shortest range that holds a share of the probability of one parameter: what is most probable is in
-  /// it, also at the end of a range. Ends nearer to the box's than a hundredth of its width are the box's.
   struct Range {
     double low, high;
   };
+  /// The shortest range that holds a share of the probability of one parameter: with one mode, what is most
+  /// probable is in it, also at the end of the box. Ends nearer to the box's than a hundredth of its width
+  /// are the box's.
   Range shortest(Eigen::Index parameter, double share) const;
 };
 

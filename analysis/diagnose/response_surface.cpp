@@ -144,6 +144,7 @@ void ResponseSurface::make_terms(const ModelSpace& space, const std::vector<Desi
   groups_ = 1 + 2 * static_cast<int>(space.effects.size());
   first_of_pairs_ = terms_.size();
   for (const auto& [a, b] : together) {
+    first_of_pair_.push_back(terms_.size());
     const std::vector<Term> pair = terms_of_pair(a, b, groups_++);
     terms_.insert(terms_.end(), pair.begin(), pair.end());
   }
@@ -173,12 +174,12 @@ std::vector<ResponseSurface::Term> ResponseSurface::terms_of_pair(int effect, in
   return terms;
 }
 
-ResponseSurface::There ResponseSurface::there(const EffectAt& effect) const {
+ResponseSurface::PresentEffect ResponseSurface::present(const EffectAt& effect) const {
   return {&effect, effects_[effect.effect].along(effect.amplitude())};
 }
 
-double ResponseSurface::value_of(const Term& term, const Eigen::VectorXd& base, const There& effect,
-                                 const There& second) {
+double ResponseSurface::value_of(const Term& term, const Eigen::VectorXd& base, const PresentEffect& effect,
+                                 const PresentEffect& second) {
   double product = 1;
   if (term.effect >= 0)
     product = term.hat != 0 ? hat(effect.along, term.hat) : power(effect.along, term.power);
@@ -194,18 +195,16 @@ double ResponseSurface::value_of(const Term& term, const Eigen::VectorXd& base, 
 
 ResponseSurface::Values ResponseSurface::values(const ModelPoint& point) const {
   Values all;
-  const There absent;
-  std::array<There, 64> those{};
+  std::array<PresentEffect, 64> there{};
   for (const EffectAt& effect : point.effects)
-    if (acts_[effect.effect] && effect.amplitude() != 0) those[effect.effect] = there(effect);
-  const auto of = [&](int effect) -> const There& {
-    return effect < 0 ? absent : those[static_cast<std::size_t>(effect)];
+    if (acts_[effect.effect] && effect.amplitude() != 0) there[effect.effect] = present(effect);
+  const PresentEffect absent;
+  const auto of = [&](int effect) -> const PresentEffect& {
+    return effect < 0 ? absent : there[static_cast<std::size_t>(effect)];
   };
   const auto add = [&](std::size_t t) {
     const Term& term = terms_[t];
-    const There &effect = of(term.effect), &second = of(term.second);
-    if ((term.effect >= 0 && effect.effect == nullptr) || (term.second >= 0 && second.effect == nullptr))
-      return;
+    const PresentEffect &effect = of(term.effect), &second = of(term.second);
     const double product = value_of(term, point.base, effect, second);
     if (product == 0) return;
     const auto here = static_cast<Eigen::Index>(t);
@@ -218,11 +217,16 @@ ResponseSurface::Values ResponseSurface::values(const ModelPoint& point) const {
   const std::size_t first = first_of_effect_.empty() ? first_of_pairs_ : first_of_effect_.front();
   for (std::size_t t = 0; t < first; ++t) add(t);
   for (std::size_t e = 0; e < first_of_effect_.size(); ++e) {
-    if (those[e].effect == nullptr) continue;
+    if (there[e].effect == nullptr) continue;
     const std::size_t end = e + 1 < first_of_effect_.size() ? first_of_effect_[e + 1] : first_of_pairs_;
     for (std::size_t t = first_of_effect_[e]; t < end; ++t) add(t);
   }
-  for (std::size_t t = first_of_pairs_; t < terms_.size(); ++t) add(t);
+  for (std::size_t k = 0; k < known_pairs_.size(); ++k) {
+    const auto& [a, b] = known_pairs_[k];
+    if (of(a).effect == nullptr || of(b).effect == nullptr) continue;
+    const std::size_t end = k + 1 < first_of_pair_.size() ? first_of_pair_[k + 1] : terms_.size();
+    for (std::size_t t = first_of_pair_[k]; t < end; ++t) add(t);
+  }
   return all;
 }
 
@@ -425,9 +429,10 @@ std::vector<ResponseSurface::Product> ResponseSurface::unknown_products(const Mo
       const std::pair<int, int> pair(static_cast<int>(a.effect), static_cast<int>(b.effect));
       const auto terms = unknown_pairs_.find(pair);
       if (terms == unknown_pairs_.end()) continue;
+      const PresentEffect first = present(a), second = present(b);
       Product product{pair, {}};
       for (const Term& term : terms->second)
-        product.values.push_back(term.prior * value_of(term, point.base, there(a), there(b)));
+        product.values.push_back(term.prior * value_of(term, point.base, first, second));
       all.push_back(std::move(product));
     }
   return all;

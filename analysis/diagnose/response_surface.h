@@ -4,15 +4,15 @@
 //
 // Each output is a sum of terms with Gaussian priors on their coefficients: a polynomial of third order in
 // the base parameters; of each effect one of third order in how far along its amplitude is, products of that
-// with the base parameters and with the effect's other parameters; and hats along the
-// amplitude, each alone and times the base parameters and their squares, because an effect may do most of
-// what it can at the bottom of its range and something else further up. What two effects do together is the
-// product of how far along they are, that times each of them and each base parameter, and times hats along
-// either. An effect that is absent changes nothing. How large the coefficients of the base and of each effect
-// are a priori, and how large the scatter is, are those of the largest marginal likelihood. Readings of one
-// pile share nearly all of their scatter. Outputs of one run are correlated: the polynomials are those of
-// combinations of the outputs whose scatter is not. Source: Rasmussen & Williams, Gaussian Processes for
-// Machine Learning (2006), 2.1 and 5.4; Higdon et al., J. Am. Stat. Assoc. 103 (2008), for several outputs.
+// with the base parameters and with the effect's other parameters; and hats along the amplitude, each alone
+// and times the base parameters and their squares, because an effect may do most of what it can at the bottom
+// of its range and something else further up. What two effects do together is the product of how far along
+// they are, that times each of them and each base parameter, and times hats along either. An effect that is
+// absent changes nothing. How large the coefficients of the base and of each effect are a priori, and how
+// large the scatter is, are those of the largest marginal likelihood. Readings of one pile share nearly all
+// of their scatter. Outputs of one run are correlated: the polynomials are those of combinations of the
+// outputs whose scatter is not. Source: Rasmussen & Williams, Gaussian Processes for Machine Learning (2006),
+// 2.1 and 5.4; Higdon et al., J. Am. Stat. Assoc. 103 (2008), for several outputs.
 #include <Eigen/Dense>
 #include <map>
 #include <string>
@@ -70,14 +70,14 @@ class ResponseSurface {
   };
   void make_terms(const ModelSpace& space, const std::vector<DesignRun>& runs);
   std::vector<Term> terms_of_pair(int effect, int second, int group) const;
-  struct There {  // an effect that is
-    const EffectAt* effect = nullptr;
-    double along = 0;  // see CandidateEffect::along
+  struct PresentEffect {
+    const EffectAt* effect = nullptr;  // none: absent
+    double along = 0;                  // see CandidateEffect::along
   };
-  There there(const EffectAt& effect) const;
-  // Of a term whose effects are there; the second of a product only.
-  static double value_of(const Term& term, const Eigen::VectorXd& base, const There& effect,
-                         const There& second);
+  PresentEffect present(const EffectAt& effect) const;
+  // Of a term whose effects are present; the second of a product only.
+  static double value_of(const Term& term, const Eigen::VectorXd& base, const PresentEffect& effect,
+                         const PresentEffect& second);
   // The terms that do not vanish at a point, and their values.
   struct Values {
     std::vector<Eigen::Index> which;
@@ -133,10 +133,11 @@ class ResponseSurface {
   std::vector<Term> terms_;  // of the base, of each effect, of pairs
   std::vector<std::size_t> first_of_effect_;
   std::size_t first_of_pairs_ = 0;
-  std::vector<Fit> fits_;            // by combination
-  Eigen::VectorXd centre_;           // of outputs
-  Eigen::MatrixXd to_outputs_;       // outputs - centre = to_outputs * combinations
-  Eigen::MatrixXd to_combinations_;  // its inverse
+  std::vector<std::size_t> first_of_pair_;  // by known pair
+  std::vector<Fit> fits_;                   // by combination
+  Eigen::VectorXd centre_;                  // of outputs
+  Eigen::MatrixXd to_outputs_;              // outputs - centre = to_outputs * combinations
+  Eigen::MatrixXd to_combinations_;         // its inverse
   Eigen::MatrixXd scatter_;
   Eigen::VectorXd leave_one_out_;
 };

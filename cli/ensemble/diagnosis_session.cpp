@@ -21,7 +21,6 @@ constexpr std::uint64_t kBaseSeeds = 500'000, kEffectSeeds = 510'000, kCheckSeed
 constexpr std::uint64_t kSeedsOfOneEffect = 1000;
 constexpr double kRivalBy = 20;  // ratio of probabilities up to which a rival is simulated, too
 constexpr std::size_t kMostRivals = 2;
-constexpr double kSpread = 0.5;       // power of probabilities by which rivals share simulations
 constexpr int kRoundsOfPairs = 1;     // over those of single effects
 constexpr double kMoved = 0.1;        // distance over which a fit has moved, and is simulated anew
 constexpr std::size_t kMostNext = 5;  // measurements proposed
@@ -75,6 +74,11 @@ void read_piles(const ModelSpace& space, const SimulationCounts& counts,
   }
 }
 
+// One effect, then pairs, and then a name that is not borne out have so many rounds each.
+int most_rounds(const SimulationCounts& counts) {
+  return 3 * counts.rounds;
+}
+
 // Of a model, that gave what was measured.
 struct TooFewRuns : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -115,13 +119,12 @@ std::vector<const Judgement*> worth_simulating(const Diagnosis& d) {
   return all;
 }
 
-// How many of so many simulations go to which rival of the leading hypothesis: by their probabilities, its
-// own among them, to the power kSpread, as what is learnt from of one is spread wider than what is open of
-// it.
+// How many of so many simulations go to which rival of the leading hypothesis: by the roots of all
+// probabilities, its own among them. The more even they are, the less is known of which is right.
 std::vector<std::pair<const Judgement*, int>> shared_by_rivals(const Diagnosis& d, const Judgement& leading,
                                                                int count) {
   const auto weight = [&](const Judgement& j) {
-    return j.hypothesis.effects.empty() ? 0.0 : std::pow(j.probability, kSpread);
+    return j.hypothesis.effects.empty() ? 0.0 : std::sqrt(j.probability);
   };
   double all = 0, sum = 0;
   for (const Judgement& j : d.judgements) all += weight(j);
@@ -275,8 +278,8 @@ std::vector<ExperimentRuns> DiagnosisSession::in_every_experiment(
 
 int DiagnosisSession::most_further() const {
   // A round simulates the calibrated model, the leading effect, its rivals, and what would be named, and what
-  // the data leave open of them; the end what is named. Pairs have rounds of their own.
-  const int rounds = (1 + kRoundsOfPairs) * model_.simulations.rounds,
+  // the data leave open of them; the end what is named, and what comes next if that is contradicted.
+  const int rounds = most_rounds(model_.simulations),
             points = (3 + static_cast<int>(kMostRivals)) * rounds + 1;
   return static_cast<int>(design_.size()) *
          (points * model_.simulations.check + 2 * rounds * model_.simulations.effect);
@@ -516,7 +519,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     const auto there = simulated_of.find(j.hypothesis.effects);
     if (there == simulated_of.end()) return nullptr;
     return &*std::max_element(there->second.begin(), there->second.end(),
-                              [&](const auto& a, const auto& b) { return gap_of(a).p < gap_of(b).p; });
+                              [&](const auto& a, const auto& b) { return gap_of(a).chi2 > gap_of(b).chi2; });
   };
   const auto borne_out = [&](const Judgement& j) {
     return best_shown(j) != nullptr && gap_of(*best_shown(j)).p > kFitsAbove;
@@ -544,13 +547,12 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     if (const Judgement* best = best_effect(d);
         pairs != Pairs::always && best != nullptr && best->hypothesis.effects.size() > 1) {
       pairs = Pairs::always;
-      last_round = outcome.rounds + kRoundsOfPairs * model_.simulations.rounds;
+      last_round = outcome.rounds + model_.simulations.rounds;
     }
-    // What is named on and on, and not borne out by its own simulations, is fitted to them again.
-    if (const Judgement* named = named_first(d);
-        outcome.rounds >=
-        last_round + (named != nullptr && !borne_out(*named) ? model_.simulations.rounds : 0))
-      break;
+    // A name that its own simulations have not borne out is fitted to them again.
+    const Judgement* named = named_first(d);
+    const int further = named != nullptr && !borne_out(*named) ? model_.simulations.rounds : 0;
+    if (outcome.rounds >= std::min(last_round + further, most_rounds(model_.simulations))) break;
     ++outcome.rounds;
     std::vector<std::size_t> known;
     for (const auto& runs : learnt_) known.push_back(runs.size());
@@ -560,11 +562,12 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
       for (const Judgement* j : worth)
         if (show(*j)) fresh = true;
       if (const Judgement& leading = *worth.front(); shown(leading) != nullptr) {
+        const SimulatedPoints so_far = simulated();
         std::vector<ModelPoint> points =
-            where_to_learn(space_, d, model, leading.hypothesis, model_.simulations.effect, simulated());
+            where_to_learn(space_, d, model, leading.hypothesis, model_.simulations.effect, so_far);
         for (const auto& [rival, count] : shared_by_rivals(d, leading, model_.simulations.effect))
           if (!not_to_be_shown.contains(rival->hypothesis.effects))
-            for (ModelPoint& at : where_to_learn(space_, d, model, rival->hypothesis, count, simulated()))
+            for (ModelPoint& at : where_to_learn(space_, d, model, rival->hypothesis, count, so_far))
               points.push_back(std::move(at));
         explore(points, run, outcome);
         fresh = true;
@@ -587,9 +590,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   // those of every fit before. One model with the effects that gives the data is enough.
   const auto stands = [&](std::size_t k) {
     const Judgement& j = d.judgements[k];
-    const auto gives_the_data = [&] {
-      return !contradicts(j) || (!j.hypothesis.effects.empty() && borne_out(j));
-    };
+    const auto gives_the_data = [&] { return j.hypothesis.effects.empty() ? !contradicts(j) : borne_out(j); };
     show(j);
     if (not_to_be_shown.contains(j.hypothesis.effects)) {
       refute(d, k, std::nullopt);

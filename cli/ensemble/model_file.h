@@ -25,7 +25,8 @@ struct SimulationCounts {
   int base = 24;    ///< over the ranges of the base parameters
   int effect = 10;  ///< of each effect
   int check = 4;    ///< of a fitted model, with fresh seeds
-  int rounds = 4;   ///< of simulating fitted models and fitting again, at most
+  int rounds = 4;   ///< of simulating fitted models and fitting again, at most: of one effect, from when a
+                   ///< pair first leads, and of a name that its simulations have not borne out
 };
 
 struct DiagnosisModel {

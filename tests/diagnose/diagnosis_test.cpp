@@ -181,6 +181,34 @@ TEST_F(DiagnosisOf, PairsAreTriedWhereSimulationsContradictSingleEffects) {
 }
 
 // One number whose repeats scatter thirtyfold widens itself, and the others of its experiment hardly.
+TEST_F(DiagnosisOf, WhatAnEarlierOneSaysOfTheSameModelIsTakenOver) {
+  const Measurements measured = world.measure(SyntheticWorld::point(0.1, 0.1, {{1, 0.6}}), 5, 3);
+  const Diagnosis without = diagnose(world.space, measured, model);
+  const Diagnosis anew = diagnose(world.space, measured, model, {}, Pairs::always);
+  const Diagnosis taken_over = diagnose(world.space, measured, model, {}, Pairs::always, &without);
+  ASSERT_EQ(anew.judgements.size(), without.judgements.size() + 6) << "of four effects";
+  ASSERT_EQ(taken_over.judgements.size(), anew.judgements.size());
+  for (std::size_t k = 0; k < anew.judgements.size(); ++k) {
+    EXPECT_EQ(taken_over.judgements[k].hypothesis.effects, anew.judgements[k].hypothesis.effects);
+    EXPECT_EQ(taken_over.judgements[k].probability, anew.judgements[k].probability);
+  }
+}
+
+// Three runs of a scatter S that has proved four times as large as in the design: chi-square of a difference
+// d is d' (V + 4 S / 3)^-1 d.
+TEST_F(DiagnosisOf, GapsOfSimulationsCountWithTheScatterThatTheyProved) {
+  const Measurements measured = world.measure({world.space.nominal(), {}}, 5, 7);
+  const LearntModel wider(world.space, world.experiments, world.design(1), {{4, 1}, {4, 1}});
+  const Diagnosis d = diagnose(world.space, measured, wider);
+  const Eigen::MatrixXd one = model.scatter();
+  EXPECT_TRUE(wider.scatter().isApprox(4 * one));
+  Eigen::VectorXd off = Eigen::VectorXd::Zero(one.rows());
+  off[2] = 3;
+  const Eigen::MatrixXd covariance = d.covariance + 4 * one / 3;
+  EXPECT_NEAR(simulated_gap(d, wider, measured.vector() + off, 3).chi2, off.dot(covariance.llt().solve(off)),
+              1e-6);
+}
+
 TEST_F(DiagnosisOf, OneNumberThatScattersWidensTheOthersLittle) {
   Measurements measured = world.measure({world.space.nominal(), {}}, 5, 7);
   const Eigen::VectorXd before = working_covariance(measured, model.surfaces()).matrix.diagonal().cwiseSqrt();
@@ -517,7 +545,9 @@ TEST(ResponseSurface, FollowsTwoEffectsThatActOnEachOther) {
     }
   }
   EXPECT_LT(before / count, 2.5);
+  EXPECT_GT(before / count, 0.3);
   EXPECT_LT(after / count, 2.0);
+  EXPECT_GT(after / count, 0.3);
   EXPECT_LT(std::sqrt(error / count), 0.15);
 }
 

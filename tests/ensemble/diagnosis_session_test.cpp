@@ -53,10 +53,13 @@ class FormulaSimulator {
                               3 * cohesion * cohesion - 2 * twisting - 4 * rolling + 5 * hidden};
       const char* names[] = {"half_coverage_deg", "chi_ring1",  "chi_ring2",
                              "chi_ring3",         "profile_25", "spread_95"};
+      if (scenario["effects"] && scenario["effects"].size() == 2)
+        (cohesion > 0 && twisting > 0 ? with_both : with_two_others).insert(request.scenario);
       for (int k = 0; k < 6; ++k) {
         const double normal = std::sqrt(-2 * std::log(1 - random.uniform())) *
                               std::cos(2 * std::numbers::pi * random.uniform());
-        result.outputs[names[k]] = means[k] + 0.3 * normal;
+        result.outputs[names[k]] =
+            means[k] + (k % 3 - 1) * together * cohesion * twisting * (1 - cohesion / 4) + 0.3 * normal;
         if (request.seed >
             700'000)  // those of the design are below, those of twins have a simulator of their own
           result.outputs[names[k]] += (k % 2 == 0 ? 1 : -1) * fits_are_off_by;
@@ -67,6 +70,9 @@ class FormulaSimulator {
     return results;
   }
   int asked = 0, with_effects = 0;
+  std::set<std::string> with_both,
+      with_two_others;         ///< scenarios with cohesion and twisting, with other pairs
+  double together = 0;         ///< what cohesion and twisting do beyond what each does alone
   double fits_are_off_by = 0;  ///< what simulations of fitted models differ by from the formulas
 };
 
@@ -109,6 +115,7 @@ class Session : public testing::Test {
   // A twin's data as diagnose reads them from its files.
   JoinedData data_of(const TwinSpec& spec, TwinTruth* truth = nullptr) {
     FormulaSimulator formula;
+    formula.together = simulator.together;
     const Twin twin = make_twin(model, spec, kAssets, std::ref(formula), std::ref(formula));
     if (truth != nullptr) *truth = twin.truth;
     write_dataset(twin.data, folder);
@@ -159,6 +166,26 @@ TEST_F(Session, TakesNoMoreRoundsThanTheModelAllows) {
   simulator.asked = 0;
   EXPECT_EQ(diagnosed(spec).rounds, 1);
   EXPECT_LT(simulator.asked, all);
+}
+
+// Nothing in the design says what two effects do together: that is learnt from simulations of both.
+TEST_F(Session, NamesTwoEffectsThatActOnEachOther) {
+  simulator.together = 6;
+  const TwinSpec spec{{"cohesion", "twisting"}, 6, 10, 0.5, 11, ""};
+  TwinTruth truth;
+  DiagnosisSession session(model, data_of(spec, &truth), {}, kAssets);
+  const DiagnosisOutcome o = session.run(std::ref(simulator));
+  EXPECT_EQ(named(o), "cohesion twisting ");
+  EXPECT_GT(simulator.with_both.size(), 10u) << "explored, and not only where it fits best";
+  EXPECT_GT(simulator.with_two_others.size(), 0u);
+  ASSERT_TRUE(o.augmented.has_value());
+  EXPECT_GT(o.augmented->gap.p, 0.01);
+  const Judgement& found = o.diagnosis.judgements[o.diagnosis.verdict.named.front()];
+  for (std::size_t e = 0; e < 2; ++e) {
+    const double hidden = truth.at.effects[e].amplitude(),
+                 width = found.effects[e][0].high - found.effects[e][0].low;
+    EXPECT_NEAR(o.space.effects[e].coordinate(found.effects[e][0].middle), hidden, 0.3 * hidden) << width;
+  }
 }
 
 TEST_F(Session, SaysUnknownWithoutTheEffectInItsLibrary) {
