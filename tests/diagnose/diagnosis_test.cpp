@@ -509,7 +509,7 @@ TEST(ResponseSurface, FollowsTwoEffectsThatActOnEachOther) {
                    {"rough", "rough", 0, {{"effects.rough.size", "", 0, 1}}, {"one"}}};
   const auto truth = [](double base, double a, double b) {
     return 2 * base + 3 * std::sqrt(a) + 2 * std::sqrt(b) -
-           3 * std::sqrt(a * b) * (1 - 0.8 * std::sqrt(a)) * (1 + 0.7 * base);
+           2.5 * std::sqrt(a * b) * (1 - 0.6 * std::sqrt(a)) * (1 + 1.5 * base);
   };
   double before = 0, after = 0, error = 0;
   int count = 0;
@@ -546,9 +546,9 @@ TEST(ResponseSurface, FollowsTwoEffectsThatActOnEachOther) {
   }
   EXPECT_LT(before / count, 2.5);
   EXPECT_GT(before / count, 0.3);
-  EXPECT_LT(after / count, 2.0);
+  EXPECT_LT(after / count, 1.4);
   EXPECT_GT(after / count, 0.3);
-  EXPECT_LT(std::sqrt(error / count), 0.15);
+  EXPECT_LT(std::sqrt(error / count), 0.115);
 }
 
 // Readings of one pile share its scatter: what an effect on measurement does is then known far better than
