@@ -497,7 +497,8 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   const auto show = [&](const Judgement& j) {
     if (is_shown(j)) return false;
     try {
-      simulated_of[j.hypothesis.effects].push_back(simulate(j.best, run, outcome));
+      SimulatedModel fresh = simulate(j.best, run, outcome);
+      simulated_of[j.hypothesis.effects].push_back(std::move(fresh));
     } catch (const TooFewRuns& error) {
       if (j.hypothesis.effects.empty()) throw;
       not_to_be_shown.emplace(j.hypothesis.effects, error.what());
@@ -598,7 +599,8 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     }
     if (gives_the_data()) return true;
     try {
-      simulated_of[j.hypothesis.effects].push_back(simulate(j.best, run, outcome));
+      SimulatedModel fresh = simulate(j.best, run, outcome);
+      simulated_of[j.hypothesis.effects].push_back(std::move(fresh));
       if (gives_the_data()) return true;
     } catch (const TooFewRuns&) {
     }

@@ -65,15 +65,18 @@ class FormulaSimulator {
           result.outputs[names[k]] += (k % 2 == 0 ? 1 : -1) * fits_are_off_by;
       }
       result.outputs["at_rest"] = 1;
+      if (request.seed > 700'000 && scenario["effects"] && scenario["effects"][fits_fail_with])
+        result.state = RunState::failed;
       results.emplace_back(std::move(result));
     }
     return results;
   }
   int asked = 0, with_effects = 0;
   std::set<std::string> with_both,
-      with_two_others;         ///< scenarios with cohesion and twisting, with other pairs
-  double together = 0;         ///< what cohesion and twisting do beyond what each does alone
-  double fits_are_off_by = 0;  ///< what simulations of fitted models differ by from the formulas
+      with_two_others;                  ///< scenarios with cohesion and twisting, with other pairs
+  double together = 0;                  ///< what cohesion and twisting do beyond what each does alone
+  std::string fits_fail_with = "none";  ///< an effect with which simulations of fitted models fail
+  double fits_are_off_by = 0;           ///< what simulations of fitted models differ by from the formulas
 };
 
 class Session : public testing::Test {
@@ -214,6 +217,14 @@ TEST_F(Session, ACalibrationThatItsOwnSimulationsContradictIsNotSaid) {
   EXPECT_TRUE(o.diagnosis.verdict.named.empty());
   ASSERT_TRUE(o.calibrated.has_value());
   EXPECT_LE(o.calibrated->gap.p, 0.01);
+}
+
+TEST_F(Session, WhatCannotBeSimulatedAtItsFitIsNotNamed) {
+  simulator.fits_fail_with = "cohesion";
+  const DiagnosisOutcome o = diagnosed({{"cohesion"}, 6, 5, 0.5, 3, ""});
+  EXPECT_THAT(o.notes, testing::Contains(HasSubstr("cohesion could not be tried by full simulations")));
+  for (const std::size_t k : o.diagnosis.verdict.named)
+    EXPECT_THAT(o.diagnosis.judgements[k].hypothesis.effects, testing::Not(testing::Contains(0u)));
 }
 
 TEST_F(Session, TheDesignIsTheSameForAllDataAndWhenAnEffectIsLeftOut) {
