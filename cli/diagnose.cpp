@@ -60,8 +60,9 @@ void print_plan(const scree::DiagnosisSession& session, const scree::ResultsStor
     else
       known = to_come.empty() && known;
   }
-  fmt::print("{} simulations, {} of them in the store; then some of what may be named, {} at most\n", all,
-             there, session.most_further());
+  fmt::print(
+      "{} simulations, {} of them in the store; then one to {} rounds of up to {} about what may be named\n",
+      all, there, session.most_rounds(), session.most_in_a_round());
   for (const std::string& note : session.data().notes) fmt::print("note: {}\n", note);
   if (known)
     fmt::print("about {} are left, one run after another\n", scree::spell_duration(left));

@@ -74,11 +74,6 @@ void read_piles(const ModelSpace& space, const SimulationCounts& counts,
   }
 }
 
-// One effect, then pairs, and then a name that is not borne out have so many rounds each.
-int most_rounds(const SimulationCounts& counts) {
-  return 3 * counts.rounds;
-}
-
 // Of a model, that gave what was measured.
 struct TooFewRuns : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -276,13 +271,17 @@ std::vector<ExperimentRuns> DiagnosisSession::in_every_experiment(
   return runs;
 }
 
-int DiagnosisSession::most_further() const {
-  // A round simulates the calibrated model, the leading effect, its rivals, and what would be named, and what
-  // the data leave open of them; the end what is named, and what comes next if that is contradicted.
-  const int rounds = most_rounds(model_.simulations),
-            points = (3 + static_cast<int>(kMostRivals)) * rounds + 1;
+int DiagnosisSession::most_rounds() const {
+  // One effect, then pairs, and then a name that is not borne out have so many each.
+  return 3 * model_.simulations.rounds;
+}
+
+int DiagnosisSession::most_in_a_round() const {
+  // The calibrated model, the leading effect, its rivals, and what would be named, and what the data leave
+  // open of them.
+  const int points = 3 + static_cast<int>(kMostRivals);
   return static_cast<int>(design_.size()) *
-         (points * model_.simulations.check + 2 * rounds * model_.simulations.effect);
+         (points * model_.simulations.check + 2 * model_.simulations.effect);
 }
 
 void DiagnosisSession::learn_from(const std::vector<ExperimentRuns>& runs, const RunThrough& run,
@@ -553,7 +552,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     // A name that its own simulations have not borne out is fitted to them again.
     const Judgement* named = named_first(d);
     const int further = named != nullptr && !borne_out(*named) ? model_.simulations.rounds : 0;
-    if (outcome.rounds >= std::min(last_round + further, most_rounds(model_.simulations))) break;
+    if (outcome.rounds >= std::min(last_round + further, most_rounds())) break;
     ++outcome.rounds;
     std::vector<std::size_t> known;
     for (const auto& runs : learnt_) known.push_back(runs.size());

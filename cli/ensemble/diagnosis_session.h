@@ -75,8 +75,9 @@ class DiagnosisSession {
   const JoinedData& data() const { return data_; }
   /// Simulations of the design, by experiment.
   const std::vector<ExperimentRuns>& design() const { return design_; }
-  /// Simulations that may follow the design.
-  int most_further() const;
+  /// Rounds that may follow the design, and simulations in each.
+  int most_rounds() const;
+  int most_in_a_round() const;
   /// Throws Stopped; std::runtime_error if too few simulations gave the numbers; what `run` throws.
   DiagnosisOutcome run(const RunThrough& run);
 
