@@ -124,8 +124,8 @@ class LearntModel {
 /// the base model alone.
 using Contradicted = std::set<std::vector<std::size_t>>;
 
-/// When two effects at once are tried: where none explains the data that is not contradicted and more
-/// probable than something unknown; or whatever one of them does.
+/// When two effects at once are tried: where no single one explains the data that is neither contradicted nor
+/// less probable than something unknown; or always.
 enum class Pairs { where_none_explains, always };
 
 /// Finds, re-calibrates and names. `before`: of the same measurements and model, whose judgements are taken

@@ -492,12 +492,16 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     const SimulatedModel* there = shown(j);
     return there != nullptr && space_.distance(there->at, j.best) <= kMoved;
   };
+  // Throws TooFewRuns.
+  const auto simulate_at_its_fit = [&](const Judgement& j) {
+    SimulatedModel fresh = simulate(j.best, run, outcome);
+    simulated_of[j.hypothesis.effects].push_back(std::move(fresh));
+  };
   // Whether there was anything to simulate.
   const auto show = [&](const Judgement& j) {
     if (is_shown(j)) return false;
     try {
-      SimulatedModel fresh = simulate(j.best, run, outcome);
-      simulated_of[j.hypothesis.effects].push_back(std::move(fresh));
+      simulate_at_its_fit(j);
     } catch (const TooFewRuns& error) {
       if (j.hypothesis.effects.empty()) throw;
       not_to_be_shown.emplace(j.hypothesis.effects, error.what());
@@ -514,15 +518,12 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     return shown(j) != nullptr && space_.distance(shown(j)->at, j.best) <= kMoved &&
            gap_of(*shown(j)).p <= kFitsAbove;
   };
-  // Of all models with these effects that were simulated, the one that gives the data best.
-  const auto best_shown = [&](const Judgement& j) -> const SimulatedModel* {
-    const auto there = simulated_of.find(j.hypothesis.effects);
-    if (there == simulated_of.end()) return nullptr;
-    return &*std::max_element(there->second.begin(), there->second.end(),
-                              [&](const auto& a, const auto& b) { return gap_of(a).chi2 > gap_of(b).chi2; });
-  };
+  // Whether any model with these effects that was simulated gives the data.
   const auto borne_out = [&](const Judgement& j) {
-    return best_shown(j) != nullptr && gap_of(*best_shown(j)).p > kFitsAbove;
+    const auto there = simulated_of.find(j.hypothesis.effects);
+    return there != simulated_of.end() &&
+           std::any_of(there->second.begin(), there->second.end(),
+                       [&](const SimulatedModel& each) { return gap_of(each).p > kFitsAbove; });
   };
   const auto contradicted = [&] {
     Contradicted all;
@@ -598,8 +599,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     }
     if (gives_the_data()) return true;
     try {
-      SimulatedModel fresh = simulate(j.best, run, outcome);
-      simulated_of[j.hypothesis.effects].push_back(std::move(fresh));
+      simulate_at_its_fit(j);
       if (gives_the_data()) return true;
     } catch (const TooFewRuns&) {
     }
@@ -625,8 +625,10 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     outcome.calibrated->gap = gap_of(*calibrated);
   }
   if (const Judgement* named = named_first(d)) {
-    outcome.augmented = *best_shown(*named);
-    outcome.augmented->gap = gap_of(*best_shown(*named));
+    std::vector<SimulatedModel>& all = simulated_of.at(named->hypothesis.effects);
+    for (SimulatedModel& each : all) each.gap = gap_of(each);
+    outcome.augmented = *std::min_element(
+        all.begin(), all.end(), [](const auto& a, const auto& b) { return a.gap.chi2 < b.gap.chi2; });
     outcome.held_out_calibrated = held_out(space_, d, model, {{}, false, 0});
     outcome.held_out_augmented = held_out(space_, d, model, named->hypothesis);
   }

@@ -180,7 +180,6 @@ TEST_F(DiagnosisOf, PairsAreTriedWhereSimulationsContradictSingleEffects) {
   EXPECT_EQ(pairs({{1}}), 6) << "of four effects";
 }
 
-// One number whose repeats scatter thirtyfold widens itself, and the others of its experiment hardly.
 TEST_F(DiagnosisOf, WhatAnEarlierOneSaysOfTheSameModelIsTakenOver) {
   const Measurements measured = world.measure(SyntheticWorld::point(0.1, 0.1, {{1, 0.6}}), 5, 3);
   const Diagnosis without = diagnose(world.space, measured, model);
@@ -209,6 +208,7 @@ TEST_F(DiagnosisOf, GapsOfSimulationsCountWithTheScatterThatTheyProved) {
               1e-6);
 }
 
+// One number whose repeats scatter thirtyfold widens itself, and the others of its experiment hardly.
 TEST_F(DiagnosisOf, OneNumberThatScattersWidensTheOthersLittle) {
   Measurements measured = world.measure({world.space.nominal(), {}}, 5, 7);
   const Eigen::VectorXd before = working_covariance(measured, model.surfaces()).matrix.diagonal().cwiseSqrt();
