@@ -17,7 +17,6 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Prior probabilities; the last three are shared by all of their kind.
 constexpr double kPriorCalibration = 0.4, kPriorUnknown = 0.1, kPriorOne = 0.4, kPriorTwo = 0.1;
-constexpr std::size_t kPairsOfBest = 4;  // pairs are tried that hold one of the best so many effects
 constexpr double kLogUnknownLow = 0,
                  kLogUnknownHigh = 8;   // of the variance of what is unknown, over the data's
 constexpr std::uint64_t kSeed = 20177;  // of the integrals
@@ -382,11 +381,6 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
   std::vector<Judgement> ones;
   for (std::size_t e = 0; e < count; ++e)
     ones.push_back(judged({{e}, false, kPriorOne / static_cast<double>(count)}));
-  std::vector<std::size_t> order(count);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return ones[a].evidence.log_evidence > ones[b].evidence.log_evidence;
-  });
   const auto weight = [](const Judgement& j) {
     return std::log(j.hypothesis.prior) + j.evidence.log_evidence;
   };
@@ -397,17 +391,12 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
            weight(j) > weight(unknown);
   });
   const bool calibration_explains = d.calibration.gap.p > kFitsAbove && !contradicted.contains({});
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  if (pairs_when == Pairs::always || (!calibration_explains && !one_explains))
-    for (std::size_t k = 0; k < std::min(kPairsOfBest, count); ++k)
-      for (std::size_t e = 0; e < count; ++e) {
-        const std::pair<std::size_t, std::size_t> pair(std::min(order[k], e), std::max(order[k], e));
-        if (!space.effects[pair.first].goes_with(space.effects[pair.second])) continue;
-        if (e != order[k] && std::find(pairs.begin(), pairs.end(), pair) == pairs.end())
-          pairs.emplace_back(pair);
-      }
   const double all_pairs = 0.5 * static_cast<double>(count) * (static_cast<double>(count) - 1);
-  for (const auto& [a, b] : pairs) d.judgements.push_back(judged({{a, b}, false, kPriorTwo / all_pairs}));
+  if (pairs_when == Pairs::always || (!calibration_explains && !one_explains))
+    for (std::size_t b = 0; b < count; ++b)
+      for (std::size_t a = 0; a < b; ++a)
+        if (space.effects[a].goes_with(space.effects[b]))
+          d.judgements.push_back(judged({{a, b}, false, kPriorTwo / all_pairs}));
   d.judgements.insert(d.judgements.end(), ones.begin(), ones.end());
   d.judgements.push_back(d.calibration);
   d.judgements.push_back(unknown);

@@ -528,7 +528,8 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   const auto contradicted = [&] {
     Contradicted all;
     for (const Judgement& j : d.judgements)
-      if (!j.hypothesis.unknown && contradicts(j)) all.insert(j.hypothesis.effects);
+      if (!j.hypothesis.unknown && contradicts(j) && (j.hypothesis.effects.empty() || !borne_out(j)))
+        all.insert(j.hypothesis.effects);
     return all;
   };
   const auto not_calibration = [&] {
@@ -562,11 +563,14 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
       const std::vector<const Judgement*> worth = worth_simulating(d);
       for (const Judgement* j : worth)
         if (show(*j)) fresh = true;
-      if (const Judgement& leading = *worth.front(); shown(leading) != nullptr) {
+      // The first that could be simulated leads.
+      const auto leading =
+          std::find_if(worth.begin(), worth.end(), [&](const Judgement* j) { return shown(*j) != nullptr; });
+      if (leading != worth.end()) {
         const SimulatedPoints so_far = simulated();
         std::vector<ModelPoint> points =
-            where_to_learn(space_, d, model, leading.hypothesis, model_.simulations.effect, so_far);
-        for (const auto& [rival, count] : shared_by_rivals(d, leading, model_.simulations.effect))
+            where_to_learn(space_, d, model, (*leading)->hypothesis, model_.simulations.effect, so_far);
+        for (const auto& [rival, count] : shared_by_rivals(d, **leading, model_.simulations.effect))
           if (!not_to_be_shown.contains(rival->hypothesis.effects))
             for (ModelPoint& at : where_to_learn(space_, d, model, rival->hypothesis, count, so_far))
               points.push_back(std::move(at));
@@ -586,6 +590,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     outcome.settled = unchanged && is_shown(d.calibration);
     for (const Judgement* j : {best_effect(d), named_first(d)})
       if (j != nullptr && not_calibration()) outcome.settled = outcome.settled && is_shown(*j);
+    if (const Judgement* j = named_first(d)) outcome.settled = outcome.settled && borne_out(*j);
   }
   // What its own simulations contradict is not said: those of the last fit and fresh ones, and, of effects,
   // those of every fit before. One model with the effects that gives the data is enough.
