@@ -360,6 +360,25 @@ std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Diagnosis&
   return points;
 }
 
+std::vector<std::pair<const Judgement*, int>> shared_by_rivals(const Diagnosis& d, const Judgement& leading,
+                                                               int count) {
+  const auto weight = [&](const Judgement& j) {
+    return j.hypothesis.effects.empty() ? 0.0 : std::sqrt(j.probability);
+  };
+  double all = 0, sum = 0;
+  for (const Judgement& j : d.judgements) all += weight(j);
+  std::vector<std::pair<const Judgement*, int>> shares;
+  int given = 0;
+  for (const Judgement& j : d.judgements) {
+    if (&j == &leading || weight(j) == 0) continue;
+    sum += weight(j) / all;
+    const int share = static_cast<int>(sum * count + 0.5) - given;
+    if (share > 0) shares.emplace_back(&j, share);
+    given += share;
+  }
+  return shares;
+}
+
 Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model,
                    const Contradicted& contradicted, Pairs pairs_when, const Diagnosis* before) {
   Diagnosis d;

@@ -148,6 +148,11 @@ std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Diagnosis&
                                        const LearntModel& model, const Hypothesis& hypothesis, int count,
                                        const SimulatedPoints& simulated);
 
+/// How many of `count` simulations go to which rival of the leading hypothesis: by the roots of all
+/// probabilities, its own among them. The more even they are, the less is known of which is right.
+std::vector<std::pair<const Judgement*, int>> shared_by_rivals(const Diagnosis& diagnosis,
+                                                               const Judgement& leading, int count);
+
 /// Full simulations at a judgement's best parameters leave `gap` and contradict it, or none could be done
 /// (nothing): its probability goes to the others in proportion. Says anew what is named; the order of
 /// judgements changes.

@@ -10,6 +10,7 @@
 #include "analysis/diagnose/words.h"
 #include "cli/ensemble/design.h"
 #include "cli/ensemble/run_request.h"
+#include "cli/ensemble/tried_models.h"
 
 namespace scree {
 namespace {
@@ -21,8 +22,6 @@ constexpr std::uint64_t kBaseSeeds = 500'000, kEffectSeeds = 510'000, kCheckSeed
 constexpr std::uint64_t kSeedsOfOneEffect = 1000;
 constexpr double kRivalBy = 20;  // ratio of probabilities up to which a rival is simulated, too
 constexpr std::size_t kMostRivals = 2;
-constexpr int kRoundsOfPairs = 1;     // over those of single effects
-constexpr double kMoved = 0.1;        // distance over which a fit has moved, and is simulated anew
 constexpr std::size_t kMostNext = 5;  // measurements proposed
 
 // A number from a name (FNV-1a): an effect's design does not depend on which others there are.
@@ -74,11 +73,6 @@ void read_piles(const ModelSpace& space, const SimulationCounts& counts,
   }
 }
 
-// Of a model, that gave what was measured.
-struct TooFewRuns : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 bool same(const DiagnosisVerdict& a, const DiagnosisVerdict& b, const Diagnosis& of_a,
           const Diagnosis& of_b) {
   if (a.kind != b.kind || a.named.size() != b.named.size()) return false;
@@ -112,27 +106,6 @@ std::vector<const Judgement*> worth_simulating(const Diagnosis& d) {
       named != nullptr && std::find(all.begin(), all.end(), named) == all.end())
     all.push_back(named);
   return all;
-}
-
-// How many of so many simulations go to which rival of the leading hypothesis: by the roots of all
-// probabilities, its own among them. The more even they are, the less is known of which is right.
-std::vector<std::pair<const Judgement*, int>> shared_by_rivals(const Diagnosis& d, const Judgement& leading,
-                                                               int count) {
-  const auto weight = [&](const Judgement& j) {
-    return j.hypothesis.effects.empty() ? 0.0 : std::sqrt(j.probability);
-  };
-  double all = 0, sum = 0;
-  for (const Judgement& j : d.judgements) all += weight(j);
-  std::vector<std::pair<const Judgement*, int>> shares;
-  int given = 0;
-  for (const Judgement& j : d.judgements) {
-    if (&j == &leading || weight(j) == 0) continue;
-    sum += weight(j) / all;
-    const int share = static_cast<int>(sum * count + 0.5) - given;
-    if (share > 0) shares.emplace_back(&j, share);
-    given += share;
-  }
-  return shares;
 }
 
 }  // namespace
@@ -480,67 +453,13 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   learn_from(design_, run, outcome);
   LearntModel model = learn();
   Diagnosis d = diagnose(space_, data_.measured, model);
-  using Effects = std::vector<std::size_t>;
-  std::map<Effects, std::vector<SimulatedModel>> simulated_of;  // by hypothesis, the last one last
-  std::map<Effects, std::string> not_to_be_shown;
-  const auto shown = [&](const Judgement& j) -> const SimulatedModel* {
-    const auto there = simulated_of.find(j.hypothesis.effects);
-    return there == simulated_of.end() ? nullptr : &there->second.back();
-  };
-  const auto is_shown = [&](const Judgement& j) {
-    if (not_to_be_shown.contains(j.hypothesis.effects)) return true;
-    const SimulatedModel* there = shown(j);
-    return there != nullptr && space_.distance(there->at, j.best) <= kMoved;
-  };
-  // Throws TooFewRuns.
-  const auto simulate_at_its_fit = [&](const Judgement& j) {
-    SimulatedModel fresh = simulate(j.best, run, outcome);
-    simulated_of[j.hypothesis.effects].push_back(std::move(fresh));
-  };
-  // Whether there was anything to simulate.
-  const auto show = [&](const Judgement& j) {
-    if (is_shown(j)) return false;
-    try {
-      simulate_at_its_fit(j);
-    } catch (const TooFewRuns& error) {
-      if (j.hypothesis.effects.empty()) throw;
-      not_to_be_shown.emplace(j.hypothesis.effects, error.what());
-      outcome.notes.push_back(fmt::format("{} could not be tried by full simulations: {}",
-                                          name_of(space_, j.hypothesis), error.what()));
-    }
-    return true;
-  };
-  const auto gap_of = [&](const SimulatedModel& each) {
-    return simulated_gap(d, model, each.mean, each.runs);
-  };
-  // Simulations at the fitted values do not give the data, whatever surfaces say.
-  const auto contradicts = [&](const Judgement& j) {
-    return shown(j) != nullptr && space_.distance(shown(j)->at, j.best) <= kMoved &&
-           gap_of(*shown(j)).p <= kFitsAbove;
-  };
-  // Whether any model with these effects that was simulated gives the data.
-  const auto borne_out = [&](const Judgement& j) {
-    const auto there = simulated_of.find(j.hypothesis.effects);
-    return there != simulated_of.end() &&
-           std::any_of(there->second.begin(), there->second.end(),
-                       [&](const SimulatedModel& each) { return gap_of(each).p > kFitsAbove; });
-  };
-  const auto contradicted = [&] {
-    Contradicted all;
-    for (const Judgement& j : d.judgements)
-      if (!j.hypothesis.unknown && contradicts(j) && (j.hypothesis.effects.empty() || !borne_out(j)))
-        all.insert(j.hypothesis.effects);
-    return all;
-  };
-  const auto not_calibration = [&] {
-    return d.calibration.gap.p <= kFitsAbove || contradicts(d.calibration);
-  };
+  TriedModels tried(space_, d, model, [&](const ModelPoint& at) { return simulate(at, run, outcome); });
   Contradicted without;
   outcome.settled = d.verdict.kind == DiagnosisVerdict::Kind::nothing;
   int last_round = model_.simulations.rounds;
   Pairs pairs = Pairs::where_none_explains;
   while (!outcome.settled) {
-    if (Contradicted now = contradicted(); now != without) {
+    if (Contradicted now = tried.contradicted(); now != without) {
       without = std::move(now);
       d = diagnose(space_, data_.measured, model, without, pairs, &d);
     }
@@ -553,32 +472,12 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     }
     // A name that its own simulations have not borne out is fitted to them again.
     const Judgement* named = named_first(d);
-    const int further = named != nullptr && !borne_out(*named) ? model_.simulations.rounds : 0;
+    const int further = named != nullptr && !tried.bears_out(*named) ? model_.simulations.rounds : 0;
     if (outcome.rounds >= std::min(last_round + further, most_rounds())) break;
     ++outcome.rounds;
     std::vector<std::size_t> known;
     for (const auto& runs : learnt_) known.push_back(runs.size());
-    bool fresh = show(d.calibration);
-    if (not_calibration()) {
-      const std::vector<const Judgement*> worth = worth_simulating(d);
-      for (const Judgement* j : worth)
-        if (show(*j)) fresh = true;
-      // The first that could be simulated leads.
-      const auto leading =
-          std::find_if(worth.begin(), worth.end(), [&](const Judgement* j) { return shown(*j) != nullptr; });
-      if (leading != worth.end()) {
-        const SimulatedPoints so_far = simulated();
-        std::vector<ModelPoint> points =
-            where_to_learn(space_, d, model, (*leading)->hypothesis, model_.simulations.effect, so_far);
-        for (const auto& [rival, count] : shared_by_rivals(d, **leading, model_.simulations.effect))
-          if (!not_to_be_shown.contains(rival->hypothesis.effects))
-            for (ModelPoint& at : where_to_learn(space_, d, model, rival->hypothesis, count, so_far))
-              points.push_back(std::move(at));
-        explore(points, run, outcome);
-        fresh = true;
-      }
-    }
-    if (!fresh) {
+    if (!one_round(d, model, tried, run, outcome)) {
       outcome.settled = true;
       break;
     }
@@ -587,28 +486,68 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     Diagnosis again = diagnose(space_, data_.measured, model, without, pairs);
     const bool unchanged = same(d.verdict, again.verdict, d, again);
     d = std::move(again);
-    outcome.settled = unchanged && is_shown(d.calibration);
+    outcome.settled = unchanged && tried.is_shown(d.calibration);
     for (const Judgement* j : {best_effect(d), named_first(d)})
-      if (j != nullptr && not_calibration()) outcome.settled = outcome.settled && is_shown(*j);
-    if (const Judgement* j = named_first(d)) outcome.settled = outcome.settled && borne_out(*j);
+      if (j != nullptr && tried.more_than_calibration())
+        outcome.settled = outcome.settled && tried.is_shown(*j);
+    if (const Judgement* j = named_first(d)) outcome.settled = outcome.settled && tried.bears_out(*j);
   }
-  // What its own simulations contradict is not said: those of the last fit and fresh ones, and, of effects,
-  // those of every fit before. One model with the effects that gives the data is enough.
+  say_what_stands(d, tried, outcome);
+  outcome.nominal = nominal_of_design();
+  outcome.nominal.gap = simulated_gap(d, model, outcome.nominal.mean, std::max(outcome.nominal.runs, 1));
+  if (const SimulatedModel* calibrated = tried.last(d.calibration)) {
+    outcome.calibrated = *calibrated;
+    outcome.calibrated->gap = tried.gap_of(*calibrated);
+  }
+  if (const Judgement* named = named_first(d)) {
+    outcome.augmented = tried.best(*named);
+    outcome.held_out_calibrated = held_out(space_, d, model, {{}, false, 0});
+    outcome.held_out_augmented = held_out(space_, d, model, named->hypothesis);
+  }
+  for (const auto& [effects, why] : tried.failures())
+    outcome.notes.push_back(fmt::format("{} could not be tried by full simulations: {}",
+                                        name_of(space_, {effects, false, 0}), why));
+  outcome.diagnosis = std::move(d);
+  if (outcome.diagnosis.verdict.kind == DiagnosisVerdict::Kind::group) outcome.next = tell_apart(outcome);
+  return outcome;
+}
+
+bool DiagnosisSession::one_round(const Diagnosis& d, const LearntModel& model, TriedModels& tried,
+                                 const RunThrough& run, DiagnosisOutcome& outcome) {
+  bool fresh = tried.show(d.calibration);
+  if (!tried.more_than_calibration()) return fresh;
+  const std::vector<const Judgement*> worth = worth_simulating(d);
+  for (const Judgement* j : worth)
+    if (tried.show(*j)) fresh = true;
+  const auto leading = std::find_if(worth.begin(), worth.end(),  // of those that could be simulated
+                                    [&](const Judgement* j) { return tried.last(*j) != nullptr; });
+  if (leading == worth.end()) return fresh;
+  const SimulatedPoints so_far = simulated();
+  std::vector<ModelPoint> points =
+      where_to_learn(space_, d, model, (*leading)->hypothesis, model_.simulations.effect, so_far);
+  for (const auto& [rival, count] : shared_by_rivals(d, **leading, model_.simulations.effect))
+    if (!tried.failed(*rival))
+      for (ModelPoint& at : where_to_learn(space_, d, model, rival->hypothesis, count, so_far))
+        points.push_back(std::move(at));
+  explore(points, run, outcome);
+  return true;
+}
+
+void DiagnosisSession::say_what_stands(Diagnosis& d, TriedModels& tried, DiagnosisOutcome& outcome) {
   const auto stands = [&](std::size_t k) {
     const Judgement& j = d.judgements[k];
-    const auto gives_the_data = [&] { return j.hypothesis.effects.empty() ? !contradicts(j) : borne_out(j); };
-    show(j);
-    if (not_to_be_shown.contains(j.hypothesis.effects)) {
+    tried.show(j);
+    if (tried.failed(j)) {
       refute(d, k, std::nullopt);
       return false;
     }
-    if (gives_the_data()) return true;
+    if (tried.may_be_said(j)) return true;
     try {
-      simulate_at_its_fit(j);
-      if (gives_the_data()) return true;
+      tried.show_again(j);
+      if (tried.may_be_said(j)) return true;
     } catch (const TooFewRuns&) {
     }
-    const Gap gap = gap_of(*shown(j));
+    const Gap gap = tried.gap_of(*tried.last(j));
     outcome.notes.push_back(fmt::format(
         "{}: full simulations with the fitted values do not give the data (p = {:.2g}); it is no answer",
         name_of(space_, j.hypothesis), gap.p));
@@ -621,25 +560,8 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
         stands(k);
         break;
       }
-  for (std::size_t tried = 0; tried < d.verdict.named.size();)
-    tried = stands(d.verdict.named[tried]) ? tried + 1 : 0;
-  outcome.nominal = nominal_of_design();
-  outcome.nominal.gap = simulated_gap(d, model, outcome.nominal.mean, std::max(outcome.nominal.runs, 1));
-  if (const SimulatedModel* calibrated = shown(d.calibration)) {
-    outcome.calibrated = *calibrated;
-    outcome.calibrated->gap = gap_of(*calibrated);
-  }
-  if (const Judgement* named = named_first(d)) {
-    std::vector<SimulatedModel>& all = simulated_of.at(named->hypothesis.effects);
-    for (SimulatedModel& each : all) each.gap = gap_of(each);
-    outcome.augmented = *std::min_element(
-        all.begin(), all.end(), [](const auto& a, const auto& b) { return a.gap.chi2 < b.gap.chi2; });
-    outcome.held_out_calibrated = held_out(space_, d, model, {{}, false, 0});
-    outcome.held_out_augmented = held_out(space_, d, model, named->hypothesis);
-  }
-  outcome.diagnosis = std::move(d);
-  if (outcome.diagnosis.verdict.kind == DiagnosisVerdict::Kind::group) outcome.next = tell_apart(outcome);
-  return outcome;
+  for (std::size_t next = 0; next < d.verdict.named.size();)
+    next = stands(d.verdict.named[next]) ? next + 1 : 0;
 }
 
 }  // namespace scree

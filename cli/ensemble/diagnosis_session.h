@@ -66,6 +66,8 @@ struct JoinedData {
 };
 JoinedData join_datasets(const std::vector<Dataset>& datasets);
 
+class TriedModels;
+
 class DiagnosisSession {
  public:
   DiagnosisSession(const DiagnosisModel& model, JoinedData data, const std::vector<std::string>& without,
@@ -87,6 +89,12 @@ class DiagnosisSession {
   SimulatedModel simulate(const ModelPoint& point, const RunThrough& run, DiagnosisOutcome& outcome);
   // Learns from simulations spread over what the data leave open of a hypothesis.
   void explore(const std::vector<ModelPoint>& points, const RunThrough& run, DiagnosisOutcome& outcome);
+  // Simulates what leads and what the data leave open of it. Whether there was anything to do.
+  bool one_round(const Diagnosis& d, const LearntModel& model, TriedModels& tried, const RunThrough& run,
+                 DiagnosisOutcome& outcome);
+  // What its own simulations contradict is not said: those of the last fit and fresh ones, and, of effects,
+  // those of every fit before.
+  void say_what_stands(Diagnosis& d, TriedModels& tried, DiagnosisOutcome& outcome);
   SimulatedPoints simulated() const;
   LearntModel learn() const;
   // How the model foretold the simulations after the first so many, by experiment.

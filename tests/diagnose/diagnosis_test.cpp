@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "tests/diagnose/synthetic.h"
 
 namespace scree {
@@ -178,6 +180,44 @@ TEST_F(DiagnosisOf, PairsAreTriedWhereSimulationsContradictSingleEffects) {
   EXPECT_EQ(pairs({}), 0);
   EXPECT_EQ(pairs({{0}}), 0);
   EXPECT_EQ(pairs({{1}}), 6) << "of four effects";
+}
+
+// A pair may explain what neither of its effects does better alone than any other: all are tried.
+TEST_F(DiagnosisOf, AllPairsAreTriedThatMayGoTogether) {
+  SyntheticWorld larger;
+  for (const std::string name : {"effect5", "effect6", "effect7"})
+    larger.space.effects.push_back(
+        {name, name, 0, {{"effects." + name + ".size", "", 0, 1}}, {"one", "two"}});
+  larger.space.effects.back().excludes = {"effect5"};
+  const LearntModel learnt(larger.space, larger.experiments, larger.design(1));
+  const Diagnosis d = diagnose(larger.space, larger.measure(SyntheticWorld::point(0.1, 0.1), 5, 3), learnt,
+                               {}, Pairs::always);
+  std::set<std::vector<std::size_t>> pairs;
+  for (const Judgement& j : d.judgements)
+    if (j.hypothesis.effects.size() == 2) pairs.insert(j.hypothesis.effects);
+  EXPECT_EQ(pairs.size(), 7u * 6 / 2 - 1);
+  EXPECT_FALSE(pairs.contains({4, 6}));
+}
+
+// By the roots 8 : 4 : 2 : 1 : 1 of the probabilities, the leading one's eight sixteenths not given away.
+TEST(SharedByRivals, ByTheRootsOfTheirProbabilities) {
+  Diagnosis d;
+  const auto add = [&](std::vector<std::size_t> effects, double probability) {
+    d.judgements.emplace_back();
+    d.judgements.back().hypothesis.effects = std::move(effects);
+    d.judgements.back().probability = probability;
+  };
+  add({0}, 0.64), add({1, 2}, 0.16), add({}, 0.14), add({3}, 0.04), add({1}, 0.01), add({2}, 0.01);
+  const auto shares = [&](int count) {
+    std::vector<std::pair<std::ptrdiff_t, int>> all;
+    for (const auto& [rival, share] : shared_by_rivals(d, d.judgements[0], count))
+      all.emplace_back(rival - d.judgements.data(), share);
+    return all;
+  };
+  using Shares = std::vector<std::pair<std::ptrdiff_t, int>>;
+  EXPECT_EQ(shares(16), (Shares{{1, 4}, {3, 2}, {4, 1}, {5, 1}}));
+  for (std::size_t k = 1; k < d.judgements.size(); ++k) d.judgements[k].probability = 0;
+  EXPECT_TRUE(shares(16).empty());
 }
 
 TEST_F(DiagnosisOf, WhatAnEarlierOneSaysOfTheSameModelIsTakenOver) {
