@@ -127,7 +127,7 @@ int run_diagnose(const DiagnoseOptions& options) {
   if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
   scree::DiagnosisOutcome outcome;
   try {
-    outcome = session.run(run_through(*store, options.ensemble));
+    outcome = session.run(run_through(*store, options.ensemble), options.ensemble.cores());
   } catch (const scree::Stopped& stopped) {
     fmt::print(stderr, "{}\n", stopped.what());
     return kInterrupted;

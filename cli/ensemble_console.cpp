@@ -16,6 +16,10 @@ namespace {
 constexpr double kTerminalInterval = 0.5, kPlainInterval = 30;  // s between lines of progress
 }
 
+int EnsembleOptions::cores() const {
+  return jobs > 0 ? jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
 std::unique_ptr<scree::ResultsStore> open_store(const fs::path& named, bool only_look) {
   const fs::path file = named.empty() ? fs::path("runs") / "store.sqlite" : named;
   if (only_look && !fs::exists(file)) {
@@ -36,8 +40,7 @@ std::unique_ptr<scree::ResultsStore> open_store(const fs::path& named, bool only
 
 scree::EnsembleProgress run_with_progress(const std::vector<scree::RunRequest>& runs,
                                           scree::ResultsStore& store, const EnsembleOptions& options) {
-  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  scree::LocalProcesses processes(options.jobs > 0 ? options.jobs : cores, options.checkpoint_minutes);
+  scree::LocalProcesses processes(options.cores(), options.checkpoint_minutes);
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const auto start = std::chrono::steady_clock::now();
   double shown = -1e9;

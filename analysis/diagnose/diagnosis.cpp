@@ -10,6 +10,8 @@
 #include <map>
 #include <numeric>
 
+#include "analysis/diagnose/in_parallel.h"
+
 namespace scree {
 namespace {
 
@@ -282,10 +284,11 @@ DiagnosisVerdict verdict_of(const Diagnosis& d) {
 }  // namespace
 
 LearntModel::LearntModel(const ModelSpace& space, const std::vector<std::string>& experiments,
-                         const DesignRuns& runs, std::vector<Widening> widening)
+                         const DesignRuns& runs, std::vector<Widening> widening, int threads)
     : widening_(std::move(widening)) {
   widening_.resize(experiments.size());
-  for (std::size_t e = 0; e < experiments.size(); ++e) surfaces_.emplace_back(space, experiments[e], runs[e]);
+  for (std::size_t e = 0; e < experiments.size(); ++e)
+    surfaces_.emplace_back(space, experiments[e], runs[e], threads);
 }
 
 SurfacePrediction LearntModel::at(const ModelPoint& point) const {
@@ -380,7 +383,7 @@ std::vector<std::pair<const Judgement*, int>> shared_by_rivals(const Diagnosis& 
 }
 
 Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model,
-                   const Contradicted& contradicted, Pairs pairs_when, const Diagnosis* before) {
+                   const Contradicted& contradicted, Pairs pairs_when, const Diagnosis* before, int threads) {
   Diagnosis d;
   d.measured = measured;
   const WorkingCovariance working = working_covariance(measured, model.surfaces());
@@ -389,33 +392,46 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
   const Likelihood likelihood(space, model, measured, d.covariance, d.freedom,
                               everything(static_cast<Eigen::Index>(measured.values.size())));
   find(space, model, d);
-  const auto judged = [&](const Hypothesis& h) {
-    if (before != nullptr)
-      for (const Judgement& j : before->judgements)
-        if (j.hypothesis.effects == h.effects && j.hypothesis.unknown == h.unknown) return j;
-    return judge(space, likelihood, h);
+  const auto judged = [&](const std::vector<Hypothesis>& hypotheses) {
+    std::vector<Judgement> all(hypotheses.size());
+    in_parallel(all.size(), threads, [&](std::size_t k) {
+      const Hypothesis& h = hypotheses[k];
+      if (before != nullptr)
+        for (const Judgement& j : before->judgements)
+          if (j.hypothesis.effects == h.effects && j.hypothesis.unknown == h.unknown) {
+            all[k] = j;
+            return;
+          }
+      all[k] = judge(space, likelihood, h);
+    });
+    return all;
   };
-  d.calibration = judged({{}, false, kPriorCalibration});
   const std::size_t count = space.effects.size();
-  std::vector<Judgement> ones;
+  std::vector<Hypothesis> singles{{{}, false, kPriorCalibration}, {{}, true, kPriorUnknown}};
   for (std::size_t e = 0; e < count; ++e)
-    ones.push_back(judged({{e}, false, kPriorOne / static_cast<double>(count)}));
+    singles.push_back({{e}, false, kPriorOne / static_cast<double>(count)});
+  std::vector<Judgement> ones = judged(singles);
+  d.calibration = ones[0];
+  const Judgement unknown = ones[1];
+  ones.erase(ones.begin(), ones.begin() + 2);
   const auto weight = [](const Judgement& j) {
     return std::log(j.hypothesis.prior) + j.evidence.log_evidence;
   };
-  const Judgement unknown = judged({{}, true, kPriorUnknown});
   // Two effects are for what none explains alone, or none better than something unknown does.
   const bool one_explains = std::any_of(ones.begin(), ones.end(), [&](const Judgement& j) {
     return j.gap.p > kNothingAbove && !contradicted.contains(j.hypothesis.effects) &&
            weight(j) > weight(unknown);
   });
   const bool calibration_explains = d.calibration.gap.p > kFitsAbove && !contradicted.contains({});
-  const double all_pairs = 0.5 * static_cast<double>(count) * (static_cast<double>(count) - 1);
-  if (pairs_when == Pairs::always || (!calibration_explains && !one_explains))
+  if (pairs_when == Pairs::always || (!calibration_explains && !one_explains)) {
+    const double all_pairs = 0.5 * static_cast<double>(count) * (static_cast<double>(count) - 1);
+    std::vector<Hypothesis> pairs;
     for (std::size_t b = 0; b < count; ++b)
       for (std::size_t a = 0; a < b; ++a)
         if (space.effects[a].goes_with(space.effects[b]))
-          d.judgements.push_back(judged({{a, b}, false, kPriorTwo / all_pairs}));
+          pairs.push_back({{a, b}, false, kPriorTwo / all_pairs});
+    d.judgements = judged(pairs);
+  }
   d.judgements.insert(d.judgements.end(), ones.begin(), ones.end());
   d.judgements.push_back(d.calibration);
   d.judgements.push_back(unknown);

@@ -108,7 +108,7 @@ class LearntModel {
  public:
   /// `widening`: by experiment; empty: none. Throws std::invalid_argument, see ResponseSurface.
   LearntModel(const ModelSpace& space, const std::vector<std::string>& experiments, const DesignRuns& runs,
-              std::vector<Widening> widening = {});
+              std::vector<Widening> widening = {}, int threads = 1);
   /// Of all values, in their order.
   SurfacePrediction at(const ModelPoint& point) const;
   /// Covariance of one run of each experiment about its mean: between seeds.
@@ -129,10 +129,10 @@ using Contradicted = std::set<std::vector<std::size_t>>;
 enum class Pairs { where_none_explains, always };
 
 /// Finds, re-calibrates and names. `before`: of the same measurements and model, whose judgements are taken
-/// over.
+/// over. The number of threads changes nothing.
 Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const LearntModel& model,
                    const Contradicted& contradicted = {}, Pairs pairs_when = Pairs::where_none_explains,
-                   const Diagnosis* before = nullptr);
+                   const Diagnosis* before = nullptr, int threads = 1);
 
 /// Where simulations were done: those that gave the numbers, and those that failed or did not.
 struct SimulatedPoints {

@@ -9,6 +9,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "analysis/diagnose/in_parallel.h"
+
 namespace scree {
 namespace {
 
@@ -341,7 +343,7 @@ ResponseSurface::Fit ResponseSurface::fit(const Features& features, const Eigen:
 }
 
 ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& experiment,
-                                 const std::vector<DesignRun>& runs) {
+                                 const std::vector<DesignRun>& runs, int threads) {
   effects_ = space.effects;
   for (const CandidateEffect& effect : effects_) acts_.push_back(effect.acts_in(experiment));
   if (acts_.size() > 64) throw std::invalid_argument("at most 64 effects");
@@ -387,11 +389,12 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
   // Correlation of the scatter, from each output on its own; drawn towards none as far as the data are few.
   Eigen::MatrixXd residual(n, p);
   Eigen::VectorXd freedom(p);
-  for (Eigen::Index j = 0; j < p; ++j) {
+  in_parallel(static_cast<std::size_t>(p), threads, [&](std::size_t output) {
+    const auto j = static_cast<Eigen::Index>(output);
     const Fit alone = fit(features, off.col(j) / unit[j], false);
     residual.col(j) = alone.residual / std::sqrt(alone.freedom);
     freedom[j] = alone.freedom;
-  }
+  });
   Eigen::MatrixXd covariance = residual.transpose() * residual;
   Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(1e-24).cwiseSqrt();
   Eigen::MatrixXd correlation =
@@ -408,13 +411,16 @@ ResponseSurface::ResponseSurface(const ModelSpace& space, const std::string& exp
   const Eigen::MatrixXd combinations = off * to_combinations_.transpose();
   Eigen::VectorXd variance(p);
   leave_one_out_.resize(p);
-  for (Eigen::Index j = 0; j < p; ++j) {
-    fits_.push_back(fit(features, combinations.col(j), true));
-    variance[j] = fits_.back().residual.squaredNorm() / fits_.back().freedom;
-    fits_.back().covariance *= variance[j] / fits_.back().scatter;
-    fits_.back().scatter = variance[j];
-    leave_one_out_[j] = fits_.back().leave_one_out;
-  }
+  fits_.resize(static_cast<std::size_t>(p));
+  in_parallel(fits_.size(), threads, [&](std::size_t combination) {
+    const auto j = static_cast<Eigen::Index>(combination);
+    Fit& here = fits_[combination];
+    here = fit(features, combinations.col(j), true);
+    variance[j] = here.residual.squaredNorm() / here.freedom;
+    here.covariance *= variance[j] / here.scatter;
+    here.scatter = variance[j];
+    leave_one_out_[j] = here.leave_one_out;
+  });
   scatter_ = to_outputs_ * variance.asDiagonal() * to_outputs_.transpose();
 }
 

@@ -40,8 +40,9 @@ struct SurfacePrediction {
 class ResponseSurface {
  public:
   /// `experiment` chooses the effects that act. Throws std::invalid_argument with fewer runs than base
-  /// coefficients.
-  ResponseSurface(const ModelSpace& space, const std::string& experiment, const std::vector<DesignRun>& runs);
+  /// coefficients. The number of threads changes nothing.
+  ResponseSurface(const ModelSpace& space, const std::string& experiment, const std::vector<DesignRun>& runs,
+                  int threads = 1);
 
   SurfacePrediction at(const ModelPoint& point) const;
   /// Covariance of one run about the mean: between seeds.

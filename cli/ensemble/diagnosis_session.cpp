@@ -427,7 +427,7 @@ LearntModel DiagnosisSession::learn() const {
   std::vector<Widening> factors;
   for (const auto& of_one : forecasts_) factors.push_back(widening(of_one));
   try {
-    return {space_, data_.measured.experiments, learnt_, factors};
+    return {space_, data_.measured.experiments, learnt_, factors, threads_};
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(error.what());
   }
@@ -441,7 +441,8 @@ void DiagnosisSession::compare(const LearntModel& model, const std::vector<std::
   }
 }
 
-DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
+DiagnosisOutcome DiagnosisSession::run(const RunThrough& run, int threads) {
+  threads_ = threads;
   DiagnosisOutcome outcome;
   outcome.space = space_;
   outcome.notes = data_.notes;
@@ -452,7 +453,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
         data_.measured.values.size(), space_.base.size()));
   learn_from(design_, run, outcome);
   LearntModel model = learn();
-  Diagnosis d = diagnose(space_, data_.measured, model);
+  Diagnosis d = diagnose(space_, data_.measured, model, {}, Pairs::where_none_explains, nullptr, threads_);
   TriedModels tried(space_, d, model, [&](const ModelPoint& at) { return simulate(at, run, outcome); });
   Contradicted without;
   outcome.settled = d.verdict.kind == DiagnosisVerdict::Kind::nothing;
@@ -461,7 +462,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   while (!outcome.settled) {
     if (Contradicted now = tried.contradicted(); now != without) {
       without = std::move(now);
-      d = diagnose(space_, data_.measured, model, without, pairs, &d);
+      d = diagnose(space_, data_.measured, model, without, pairs, &d, threads_);
     }
     // Once a pair leads they stay, and have rounds of their own: there are many of them, and little was
     // simulated of each.
@@ -483,7 +484,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     }
     compare(model, known);
     model = learn();
-    Diagnosis again = diagnose(space_, data_.measured, model, without, pairs);
+    Diagnosis again = diagnose(space_, data_.measured, model, without, pairs, nullptr, threads_);
     const bool unchanged = same(d.verdict, again.verdict, d, again);
     d = std::move(again);
     outcome.settled = unchanged && tried.is_shown(d.calibration);

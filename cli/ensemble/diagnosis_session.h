@@ -81,7 +81,8 @@ class DiagnosisSession {
   int most_rounds() const;
   int most_in_a_round() const;
   /// Throws Stopped; std::runtime_error if too few simulations gave the numbers; what `run` throws.
-  DiagnosisOutcome run(const RunThrough& run);
+  /// `threads`: for what is not simulated.
+  DiagnosisOutcome run(const RunThrough& run, int threads = 1);
 
  private:
   std::vector<ExperimentRuns> in_every_experiment(const std::vector<PlannedRun>& planned) const;
@@ -117,7 +118,8 @@ class DiagnosisSession {
   };
   std::vector<std::vector<WholeRun>> everything_;  // for what was not measured; by experiment
   std::vector<std::string> failure_;               // the last of each experiment, why; empty without one
-  std::uint64_t checks_ = 0;                       // seeds used for them
+  int threads_ = 1;
+  std::uint64_t checks_ = 0;  // seeds used for them
 };
 
 }  // namespace scree

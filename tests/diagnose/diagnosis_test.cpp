@@ -6,6 +6,7 @@
 
 #include <set>
 
+#include "analysis/diagnose/in_parallel.h"
 #include "tests/diagnose/synthetic.h"
 
 namespace scree {
@@ -180,6 +181,32 @@ TEST_F(DiagnosisOf, PairsAreTriedWhereSimulationsContradictSingleEffects) {
   EXPECT_EQ(pairs({}), 0);
   EXPECT_EQ(pairs({{0}}), 0);
   EXPECT_EQ(pairs({{1}}), 6) << "of four effects";
+}
+
+TEST_F(DiagnosisOf, ThreadsChangeNothing) {
+  const Measurements measured = world.measure(SyntheticWorld::point(0.1, 0.1, {{1, 0.6}}), 5, 3);
+  const Diagnosis alone = diagnose(world.space, measured, model, {}, Pairs::always);
+  const LearntModel shared(world.space, world.experiments, world.design(1), {}, 4);
+  const Diagnosis d = diagnose(world.space, measured, shared, {}, Pairs::always, nullptr, 4);
+  ASSERT_EQ(d.judgements.size(), alone.judgements.size());
+  for (std::size_t k = 0; k < d.judgements.size(); ++k) {
+    EXPECT_EQ(d.judgements[k].hypothesis.effects, alone.judgements[k].hypothesis.effects);
+    EXPECT_EQ(d.judgements[k].evidence.log_evidence, alone.judgements[k].evidence.log_evidence);
+    EXPECT_EQ(d.judgements[k].probability, alone.judgements[k].probability);
+  }
+}
+
+TEST(InParallel, DoesAllOnceAndThrowsWhatABodyThrows) {
+  std::vector<std::atomic<int>> done(1000);
+  in_parallel(done.size(), 4, [&](std::size_t k) { ++done[k]; });
+  for (const auto& each : done) EXPECT_EQ(each, 1);
+  in_parallel(0, 4, [](std::size_t) { FAIL(); });
+  for (const int threads : {1, 4})
+    EXPECT_THROW(in_parallel(100, threads,
+                             [](std::size_t k) {
+                               if (k == 50) throw std::runtime_error("fifty");
+                             }),
+                 std::runtime_error);
 }
 
 // A pair may explain what neither of its effects does better alone than any other: all are tried.
