@@ -117,7 +117,8 @@ int run_diagnose(const DiagnoseOptions& options) {
                  scree::suggestion(name, loaded.model.effects));
       return kBadInput;
     }
-  scree::DiagnosisSession session(loaded.model, scree::join_datasets(datasets), options.without, asset_dir());
+  scree::DiagnosisSession session(loaded.model, scree::join_datasets(datasets), options.without, asset_dir(),
+                                  options.ensemble.cores());
   const auto store = open_store(options.ensemble.store, false);
   if (!store) return kBadInput;
   if (options.plan) {
@@ -127,7 +128,7 @@ int run_diagnose(const DiagnoseOptions& options) {
   if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
   scree::DiagnosisOutcome outcome;
   try {
-    outcome = session.run(run_through(*store, options.ensemble), options.ensemble.cores());
+    outcome = session.run(run_through(*store, options.ensemble));
   } catch (const scree::Stopped& stopped) {
     fmt::print(stderr, "{}\n", stopped.what());
     return kInterrupted;

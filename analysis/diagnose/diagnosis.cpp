@@ -363,20 +363,17 @@ std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Diagnosis&
   return points;
 }
 
-std::vector<std::pair<const Judgement*, int>> shared_by_rivals(const Diagnosis& d, const Judgement& leading,
-                                                               int count) {
-  const auto weight = [&](const Judgement& j) {
-    return j.hypothesis.effects.empty() ? 0.0 : std::sqrt(j.probability);
-  };
+std::vector<std::pair<const Judgement*, int>> shared_by_rivals(const std::vector<const Judgement*>& among,
+                                                               const Judgement& leading, int count) {
   double all = 0, sum = 0;
-  for (const Judgement& j : d.judgements) all += weight(j);
+  for (const Judgement* j : among) all += std::sqrt(j->probability);
   std::vector<std::pair<const Judgement*, int>> shares;
   int given = 0;
-  for (const Judgement& j : d.judgements) {
-    if (&j == &leading || weight(j) == 0) continue;
-    sum += weight(j) / all;
+  for (const Judgement* j : among) {
+    if (j == &leading || !(j->probability > 0)) continue;
+    sum += std::sqrt(j->probability) / all;
     const int share = static_cast<int>(sum * count + 0.5) - given;
-    if (share > 0) shares.emplace_back(&j, share);
+    if (share > 0) shares.emplace_back(j, share);
     given += share;
   }
   return shares;
@@ -424,6 +421,7 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
   });
   const bool calibration_explains = d.calibration.gap.p > kFitsAbove && !contradicted.contains({});
   if (pairs_when == Pairs::always || (!calibration_explains && !one_explains)) {
+    // Those that exclude each other take their part of the prior with them.
     const double all_pairs = 0.5 * static_cast<double>(count) * (static_cast<double>(count) - 1);
     std::vector<Hypothesis> pairs;
     for (std::size_t b = 0; b < count; ++b)

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/diagnose/evidence.h"
@@ -148,9 +149,10 @@ std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Diagnosis&
                                        const LearntModel& model, const Hypothesis& hypothesis, int count,
                                        const SimulatedPoints& simulated);
 
-/// How many of `count` simulations go to which rival of the leading hypothesis: by the roots of all
-/// probabilities, its own among them. The more even they are, the less is known of which is right.
-std::vector<std::pair<const Judgement*, int>> shared_by_rivals(const Diagnosis& diagnosis,
+/// How many of `count` simulations go to which rival of the leading hypothesis: by the roots of the
+/// probabilities of all that `among` lists, its own among them. The more even they are, the less is known of
+/// which is right.
+std::vector<std::pair<const Judgement*, int>> shared_by_rivals(const std::vector<const Judgement*>& among,
                                                                const Judgement& leading, int count);
 
 /// Full simulations at a judgement's best parameters leave `gap` and contradict it, or none could be done

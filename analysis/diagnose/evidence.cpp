@@ -22,6 +22,12 @@ constexpr double kDefensive = 0.1;    // share of the proposal that is the prior
 constexpr double kFreedom = 5;        // of Student's t
 constexpr double kNever = -1e300;
 
+// std::lgamma writes the sign to a place that all threads share.
+double log_gamma(double x) {
+  int sign = 0;
+  return ::lgamma_r(x, &sign);
+}
+
 double log_sum(const std::vector<double>& logs) {
   const double most = *std::max_element(logs.begin(), logs.end());
   double sum = 0;
@@ -55,7 +61,7 @@ class Proposal {
   Proposal(const ParameterBox& box, Eigen::VectorXd mean, const Eigen::MatrixXd& covariance)
       : box_(box), mean_(std::move(mean)), factor_(covariance) {
     const double d = static_cast<double>(mean_.size());
-    log_scale_ = std::lgamma(0.5 * (kFreedom + d)) - std::lgamma(0.5 * kFreedom) -
+    log_scale_ = log_gamma(0.5 * (kFreedom + d)) - log_gamma(0.5 * kFreedom) -
                  0.5 * d * std::log(kFreedom * std::numbers::pi) -
                  factor_.matrixLLT().diagonal().array().log().sum();
     log_prior_ = -(box.high - box.low).array().log().sum();

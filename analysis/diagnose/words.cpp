@@ -194,7 +194,7 @@ std::vector<std::string> diagnosis_in_words(const DiagnosisOutcome& o) {
   }
   if (!o.settled)
     lines.push_back(
-        fmt::format("The answer still moved in the last round of simulation ({} done); more simulations "
+        fmt::format("The answer had not settled in the last round of simulation ({} done); more simulations "
                     "(`simulations` in the model file) would make it firmer.",
                     o.rounds));
   return lines;

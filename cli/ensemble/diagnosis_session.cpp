@@ -94,17 +94,23 @@ const Judgement* named_first(const Diagnosis& d) {
   return d.verdict.named.empty() ? nullptr : &d.judgements[d.verdict.named.front()];
 }
 
-// The leading effect or pair, its rivals, and what would be named, which may be another: a hypothesis of
-// which little was simulated explains almost anything.
-std::vector<const Judgement*> worth_simulating(const Diagnosis& d) {
+// Effects and pairs whose fit can be simulated, as far as is known; most probable first.
+std::vector<const Judgement*> open_to_simulation(const Diagnosis& d, const TriedModels& tried) {
   std::vector<const Judgement*> all;
   for (const Judgement& j : d.judgements)
-    if (!j.hypothesis.effects.empty() && all.size() <= kMostRivals &&
-        (all.empty() || j.probability * kRivalBy > all.front()->probability))
-      all.push_back(&j);
-  if (const Judgement* named = named_first(d);
-      named != nullptr && std::find(all.begin(), all.end(), named) == all.end())
-    all.push_back(named);
+    if (!j.hypothesis.effects.empty() && !tried.failed(j)) all.push_back(&j);
+  return all;
+}
+
+// The first of them, its rivals, and what would be named, which may be another: a hypothesis of which little
+// was simulated explains almost anything.
+std::vector<const Judgement*> worth_simulating(const std::vector<const Judgement*>& open,
+                                               const Judgement* named) {
+  std::vector<const Judgement*> all;
+  for (const Judgement* j : open)
+    if (all.size() <= kMostRivals && (all.empty() || j->probability * kRivalBy > all.front()->probability))
+      all.push_back(j);
+  if (named != nullptr && std::find(all.begin(), all.end(), named) == all.end()) all.push_back(named);
   return all;
 }
 
@@ -224,10 +230,11 @@ JoinedData join_datasets(const std::vector<Dataset>& datasets) {
 }
 
 DiagnosisSession::DiagnosisSession(const DiagnosisModel& model, JoinedData data,
-                                   const std::vector<std::string>& without, fs::path asset_dir)
+                                   const std::vector<std::string>& without, fs::path asset_dir, int threads)
     : model_(model),
       data_(std::move(data)),
       asset_dir_(std::move(asset_dir)),
+      threads_(threads),
       space_(space_of(model, data_.experiments, without)) {
   design_ = in_every_experiment(design_of(space_, model.simulations));
   learnt_.resize(data_.experiments.size());
@@ -374,7 +381,7 @@ std::vector<NextMeasurement> DiagnosisSession::tell_apart(const DiagnosisOutcome
       if (plain < ResponseSurface::least_base_runs(space_.base.size()) ||
           runs.size() < everything_[e].size() * 4 / 5)
         continue;
-      const ResponseSurface surface(space_, data_.experiments[e].name, runs);
+      const ResponseSurface surface(space_, data_.experiments[e].name, runs, threads_);
       NextMeasurement next{data_.experiments[e].name + "/" + name, 0, {}};
       std::vector<double> variance;
       for (const std::size_t k : d.verdict.named) {
@@ -441,8 +448,7 @@ void DiagnosisSession::compare(const LearntModel& model, const std::vector<std::
   }
 }
 
-DiagnosisOutcome DiagnosisSession::run(const RunThrough& run, int threads) {
-  threads_ = threads;
+DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   DiagnosisOutcome outcome;
   outcome.space = space_;
   outcome.notes = data_.notes;
@@ -473,7 +479,8 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run, int threads) {
     }
     // A name that its own simulations have not borne out is fitted to them again.
     const Judgement* named = named_first(d);
-    const int further = named != nullptr && !tried.bears_out(*named) ? model_.simulations.rounds : 0;
+    const bool again = named != nullptr && !tried.failed(*named) && !tried.bears_out(*named);
+    const int further = again ? model_.simulations.rounds : 0;
     if (outcome.rounds >= std::min(last_round + further, most_rounds())) break;
     ++outcome.rounds;
     std::vector<std::size_t> known;
@@ -484,13 +491,13 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run, int threads) {
     }
     compare(model, known);
     model = learn();
-    Diagnosis again = diagnose(space_, data_.measured, model, without, pairs, nullptr, threads_);
-    const bool unchanged = same(d.verdict, again.verdict, d, again);
-    d = std::move(again);
-    outcome.settled = unchanged && tried.is_shown(d.calibration);
+    Diagnosis fresh = diagnose(space_, data_.measured, model, without, pairs, nullptr, threads_);
+    const bool unchanged = same(d.verdict, fresh.verdict, d, fresh);
+    d = std::move(fresh);
+    outcome.settled = unchanged && tried.up_to_date(d.calibration);
     for (const Judgement* j : {best_effect(d), named_first(d)})
       if (j != nullptr && tried.more_than_calibration())
-        outcome.settled = outcome.settled && tried.is_shown(*j);
+        outcome.settled = outcome.settled && tried.up_to_date(*j);
     if (const Judgement* j = named_first(d)) outcome.settled = outcome.settled && tried.bears_out(*j);
   }
   say_what_stands(d, tried, outcome);
@@ -505,9 +512,9 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run, int threads) {
     outcome.held_out_calibrated = held_out(space_, d, model, {{}, false, 0});
     outcome.held_out_augmented = held_out(space_, d, model, named->hypothesis);
   }
-  for (const auto& [effects, why] : tried.failures())
+  for (const auto& [effects, failure] : tried.failures())
     outcome.notes.push_back(fmt::format("{} could not be tried by full simulations: {}",
-                                        name_of(space_, {effects, false, 0}), why));
+                                        name_of(space_, {effects, false, 0}), failure.why));
   outcome.diagnosis = std::move(d);
   if (outcome.diagnosis.verdict.kind == DiagnosisVerdict::Kind::group) outcome.next = tell_apart(outcome);
   return outcome;
@@ -515,21 +522,18 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run, int threads) {
 
 bool DiagnosisSession::one_round(const Diagnosis& d, const LearntModel& model, TriedModels& tried,
                                  const RunThrough& run, DiagnosisOutcome& outcome) {
-  bool fresh = tried.show(d.calibration);
+  bool fresh = tried.simulate(d.calibration);
   if (!tried.more_than_calibration()) return fresh;
-  const std::vector<const Judgement*> worth = worth_simulating(d);
-  for (const Judgement* j : worth)
-    if (tried.show(*j)) fresh = true;
-  const auto leading = std::find_if(worth.begin(), worth.end(),  // of those that could be simulated
-                                    [&](const Judgement* j) { return tried.last(*j) != nullptr; });
-  if (leading == worth.end()) return fresh;
+  for (const Judgement* j : worth_simulating(open_to_simulation(d, tried), named_first(d)))
+    if (tried.simulate(*j)) fresh = true;
+  const std::vector<const Judgement*> open = open_to_simulation(d, tried);  // some may have failed now
+  if (open.empty()) return fresh;
   const SimulatedPoints so_far = simulated();
   std::vector<ModelPoint> points =
-      where_to_learn(space_, d, model, (*leading)->hypothesis, model_.simulations.effect, so_far);
-  for (const auto& [rival, count] : shared_by_rivals(d, **leading, model_.simulations.effect))
-    if (!tried.failed(*rival))
-      for (ModelPoint& at : where_to_learn(space_, d, model, rival->hypothesis, count, so_far))
-        points.push_back(std::move(at));
+      where_to_learn(space_, d, model, open.front()->hypothesis, model_.simulations.effect, so_far);
+  for (const auto& [rival, count] : shared_by_rivals(open, *open.front(), model_.simulations.effect))
+    for (ModelPoint& at : where_to_learn(space_, d, model, rival->hypothesis, count, so_far))
+      points.push_back(std::move(at));
   explore(points, run, outcome);
   return true;
 }
@@ -537,14 +541,14 @@ bool DiagnosisSession::one_round(const Diagnosis& d, const LearntModel& model, T
 void DiagnosisSession::say_what_stands(Diagnosis& d, TriedModels& tried, DiagnosisOutcome& outcome) {
   const auto stands = [&](std::size_t k) {
     const Judgement& j = d.judgements[k];
-    tried.show(j);
+    tried.simulate(j);
+    if (tried.may_be_said(j)) return true;
     if (tried.failed(j)) {
       refute(d, k, std::nullopt);
       return false;
     }
-    if (tried.may_be_said(j)) return true;
     try {
-      tried.show_again(j);
+      tried.simulate_again(j);
       if (tried.may_be_said(j)) return true;
     } catch (const TooFewRuns&) {
     }

@@ -70,8 +70,9 @@ class TriedModels;
 
 class DiagnosisSession {
  public:
+  /// `threads`: of surfaces and hypotheses; their number changes nothing.
   DiagnosisSession(const DiagnosisModel& model, JoinedData data, const std::vector<std::string>& without,
-                   std::filesystem::path asset_dir);
+                   std::filesystem::path asset_dir, int threads = 1);
 
   const ModelSpace& space() const { return space_; }
   const JoinedData& data() const { return data_; }
@@ -81,8 +82,7 @@ class DiagnosisSession {
   int most_rounds() const;
   int most_in_a_round() const;
   /// Throws Stopped; std::runtime_error if too few simulations gave the numbers; what `run` throws.
-  /// `threads`: for what is not simulated.
-  DiagnosisOutcome run(const RunThrough& run, int threads = 1);
+  DiagnosisOutcome run(const RunThrough& run);
 
  private:
   std::vector<ExperimentRuns> in_every_experiment(const std::vector<PlannedRun>& planned) const;
@@ -90,7 +90,7 @@ class DiagnosisSession {
   SimulatedModel simulate(const ModelPoint& point, const RunThrough& run, DiagnosisOutcome& outcome);
   // Learns from simulations spread over what the data leave open of a hypothesis.
   void explore(const std::vector<ModelPoint>& points, const RunThrough& run, DiagnosisOutcome& outcome);
-  // Simulates what leads and what the data leave open of it. Whether there was anything to do.
+  // Simulates what leads, its rivals, and what the data leave open of them. Whether there was anything to do.
   bool one_round(const Diagnosis& d, const LearntModel& model, TriedModels& tried, const RunThrough& run,
                  DiagnosisOutcome& outcome);
   // What its own simulations contradict is not said: those of the last fit and fresh ones, and, of effects,
@@ -106,6 +106,7 @@ class DiagnosisSession {
   const DiagnosisModel& model_;
   JoinedData data_;
   std::filesystem::path asset_dir_;
+  int threads_;
   ModelSpace space_;
   std::vector<ExperimentRuns> design_;
   DesignRuns learnt_;
@@ -118,8 +119,7 @@ class DiagnosisSession {
   };
   std::vector<std::vector<WholeRun>> everything_;  // for what was not measured; by experiment
   std::vector<std::string> failure_;               // the last of each experiment, why; empty without one
-  int threads_ = 1;
-  std::uint64_t checks_ = 0;  // seeds used for them
+  std::uint64_t checks_ = 0;                       // seeds used for fits and what is open of them
 };
 
 }  // namespace scree

@@ -1,6 +1,7 @@
 #include "cli/ensemble/tried_models.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace scree {
 namespace {
@@ -13,25 +14,30 @@ TriedModels::TriedModels(const ModelSpace& space, const Diagnosis& diagnosis, co
                          Simulate simulate)
     : space_(space), diagnosis_(diagnosis), model_(model), simulate_(std::move(simulate)) {}
 
-bool TriedModels::show(const Judgement& j) {
-  if (is_shown(j)) return false;
+bool TriedModels::simulate(const Judgement& j) {
+  if (up_to_date(j)) return false;
   try {
-    show_again(j);
+    simulate_again(j);
   } catch (const TooFewRuns& error) {
     if (j.hypothesis.effects.empty()) throw;
-    failed_.emplace(j.hypothesis.effects, error.what());
+    failures_.insert_or_assign(j.hypothesis.effects, Failure{j.best, error.what()});
   }
   return true;
 }
 
-void TriedModels::show_again(const Judgement& j) {
+void TriedModels::simulate_again(const Judgement& j) {
   SimulatedModel fresh = simulate_(j.best);  // an entry only if that did not throw
   models_[j.hypothesis.effects].push_back(std::move(fresh));
 }
 
-bool TriedModels::is_shown(const Judgement& j) const {
+bool TriedModels::up_to_date(const Judgement& j) const {
   const SimulatedModel* there = last(j);
   return failed(j) || (there != nullptr && space_.distance(there->at, j.best) <= kMoved);
+}
+
+bool TriedModels::failed(const Judgement& j) const {
+  const auto there = failures_.find(j.hypothesis.effects);
+  return there != failures_.end() && space_.distance(there->second.at, j.best) <= kMoved;
 }
 
 const SimulatedModel* TriedModels::last(const Judgement& j) const {
@@ -65,7 +71,8 @@ bool TriedModels::bears_out(const Judgement& j) const {
 Contradicted TriedModels::contradicted() const {
   Contradicted all;
   for (const Judgement& j : diagnosis_.judgements)
-    if (!j.hypothesis.unknown && contradicts(j) && !may_be_said(j)) all.insert(j.hypothesis.effects);
+    if (!j.hypothesis.unknown && (failed(j) || contradicts(j)) && !may_be_said(j))
+      all.insert(j.hypothesis.effects);
   return all;
 }
 

@@ -24,15 +24,16 @@ class TriedModels {
   TriedModels(const ModelSpace& space, const Diagnosis& diagnosis, const LearntModel& model,
               Simulate simulate);
 
-  /// Simulates a hypothesis at its fit unless its last model lies there, or none could be simulated. Whether
-  /// there was anything to do. Throws TooFewRuns of the base model.
-  bool show(const Judgement& judgement);
+  /// Simulates a hypothesis at its fit unless it is up to date. Whether there was anything to do. Throws
+  /// TooFewRuns of the base model.
+  bool simulate(const Judgement& judgement);
   /// Simulates it there with fresh seeds, whatever there is. Throws TooFewRuns.
-  void show_again(const Judgement& judgement);
+  void simulate_again(const Judgement& judgement);
 
-  bool is_shown(const Judgement& judgement) const;
-  /// Some fit of it could not be simulated.
-  bool failed(const Judgement& judgement) const { return failed_.contains(judgement.hypothesis.effects); }
+  /// Its last model lies at its fit, or one there could not be simulated.
+  bool up_to_date(const Judgement& judgement) const;
+  /// Its fit could not be simulated.
+  bool failed(const Judgement& judgement) const;
   /// The last model with these effects; none: nullptr.
   const SimulatedModel* last(const Judgement& judgement) const;
   /// Of all those with these effects, the one nearest to the data, with its gap; there is one.
@@ -41,19 +42,23 @@ class TriedModels {
 
   /// Simulations at the fitted values do not give the data, whatever surfaces say.
   bool contradicts(const Judgement& judgement) const;
-  /// Any model with these effects that was simulated gives the data.
+  /// A model with these effects that was simulated gives the data.
   bool bears_out(const Judgement& judgement) const;
-  /// Effects whose fit is contradicted and that no model has borne out; empty ones: the base model at its
-  /// fit.
+  /// Effects whose fit is contradicted or could not be simulated, and that no model has borne out; empty
+  /// ones: the base model at its fit.
   Contradicted contradicted() const;
   /// Base parameters alone do not give the data.
   bool more_than_calibration() const;
-  /// What may be said: of effects, that one model with them gives the data; of re-calibration, that its last
+  /// What may be said: of effects, that a model with them gives the data; of re-calibration, that its last
   /// fit does.
   bool may_be_said(const Judgement& judgement) const;
 
-  /// Why hypotheses could not be simulated, by their effects.
-  const std::map<std::vector<std::size_t>, std::string>& failures() const { return failed_; }
+  /// Why fits could not be simulated, the last of each hypothesis, by its effects.
+  struct Failure {
+    ModelPoint at;
+    std::string why;
+  };
+  const std::map<std::vector<std::size_t>, Failure>& failures() const { return failures_; }
 
  private:
   const ModelSpace& space_;
@@ -61,7 +66,7 @@ class TriedModels {
   const LearntModel& model_;
   Simulate simulate_;
   std::map<std::vector<std::size_t>, std::vector<SimulatedModel>> models_;  // by effects; the last one last
-  std::map<std::vector<std::size_t>, std::string> failed_;
+  std::map<std::vector<std::size_t>, Failure> failures_;
 };
 
 }  // namespace scree

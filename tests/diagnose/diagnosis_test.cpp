@@ -4,7 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
+#include <latch>
 #include <set>
+#include <stdexcept>
+#include <thread>
+#include <vector>
 
 #include "analysis/diagnose/in_parallel.h"
 #include "tests/diagnose/synthetic.h"
@@ -183,7 +189,8 @@ TEST_F(DiagnosisOf, PairsAreTriedWhereSimulationsContradictSingleEffects) {
   EXPECT_EQ(pairs({{1}}), 6) << "of four effects";
 }
 
-TEST_F(DiagnosisOf, ThreadsChangeNothing) {
+using DiagnosisThreads = DiagnosisOf;
+TEST_F(DiagnosisThreads, ChangeNothing) {
   const Measurements measured = world.measure(SyntheticWorld::point(0.1, 0.1, {{1, 0.6}}), 5, 3);
   const Diagnosis alone = diagnose(world.space, measured, model, {}, Pairs::always);
   const LearntModel shared(world.space, world.experiments, world.design(1), {}, 4);
@@ -193,29 +200,45 @@ TEST_F(DiagnosisOf, ThreadsChangeNothing) {
     EXPECT_EQ(d.judgements[k].hypothesis.effects, alone.judgements[k].hypothesis.effects);
     EXPECT_EQ(d.judgements[k].evidence.log_evidence, alone.judgements[k].evidence.log_evidence);
     EXPECT_EQ(d.judgements[k].probability, alone.judgements[k].probability);
+    EXPECT_EQ(d.judgements[k].best.base, alone.judgements[k].best.base);
+    EXPECT_EQ(d.judgements[k].gap.chi2, alone.judgements[k].gap.chi2);
   }
+  EXPECT_EQ(d.verdict.named, alone.verdict.named);
 }
 
-TEST(InParallel, DoesAllOnceAndThrowsWhatABodyThrows) {
+TEST(InParallel, SharesTheWork) {
   std::vector<std::atomic<int>> done(1000);
   in_parallel(done.size(), 4, [&](std::size_t k) { ++done[k]; });
   for (const auto& each : done) EXPECT_EQ(each, 1);
   in_parallel(0, 4, [](std::size_t) { FAIL(); });
-  for (const int threads : {1, 4})
-    EXPECT_THROW(in_parallel(100, threads,
-                             [](std::size_t k) {
-                               if (k == 50) throw std::runtime_error("fifty");
-                             }),
-                 std::runtime_error);
+  std::latch both(2);  // each waits for the other
+  in_parallel(2, 2, [&](std::size_t) { both.arrive_and_wait(); });
 }
 
-// A pair may explain what neither of its effects does better alone than any other: all are tried.
+TEST(InParallel, ThrowsWhatTheFirstThrewWhenAllHaveEnded) {
+  for (const int threads : {1, 4}) {
+    std::atomic<int> under_way{0}, done{0};
+    EXPECT_THROW(in_parallel(1000, threads,
+                             [&](std::size_t k) {
+                               ++under_way;
+                               std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                               --under_way;
+                               if (k == 5) throw std::out_of_range("five");
+                               ++done;
+                             }),
+                 std::out_of_range);
+    EXPECT_EQ(under_way, 0);
+    EXPECT_LT(done, 900) << "what was not begun is left";
+  }
+}
+
+// Two effects may explain the data though several others do better alone.
 TEST_F(DiagnosisOf, AllPairsAreTriedThatMayGoTogether) {
   SyntheticWorld larger;
   for (const std::string name : {"effect5", "effect6", "effect7"})
     larger.space.effects.push_back(
         {name, name, 0, {{"effects." + name + ".size", "", 0, 1}}, {"one", "two"}});
-  larger.space.effects.back().excludes = {"effect5"};
+  larger.space.effects.back().excludes = "effect5";
   const LearntModel learnt(larger.space, larger.experiments, larger.design(1));
   const Diagnosis d = diagnose(larger.space, larger.measure(SyntheticWorld::point(0.1, 0.1), 5, 3), learnt,
                                {}, Pairs::always);
@@ -228,23 +251,23 @@ TEST_F(DiagnosisOf, AllPairsAreTriedThatMayGoTogether) {
 
 // By the roots 8 : 4 : 2 : 1 : 1 of the probabilities, the leading one's eight sixteenths not given away.
 TEST(SharedByRivals, ByTheRootsOfTheirProbabilities) {
-  Diagnosis d;
-  const auto add = [&](std::vector<std::size_t> effects, double probability) {
-    d.judgements.emplace_back();
-    d.judgements.back().hypothesis.effects = std::move(effects);
-    d.judgements.back().probability = probability;
-  };
-  add({0}, 0.64), add({1, 2}, 0.16), add({}, 0.14), add({3}, 0.04), add({1}, 0.01), add({2}, 0.01);
-  const auto shares = [&](int count) {
-    std::vector<std::pair<std::ptrdiff_t, int>> all;
-    for (const auto& [rival, share] : shared_by_rivals(d, d.judgements[0], count))
-      all.emplace_back(rival - d.judgements.data(), share);
+  std::vector<Judgement> judgements(5);
+  std::vector<const Judgement*> among;
+  for (const double probability : {0.64, 0.16, 0.04, 0.01, 0.01}) {
+    judgements[among.size()].probability = probability;
+    among.push_back(&judgements[among.size()]);
+  }
+  using Shares = std::vector<std::pair<std::ptrdiff_t, int>>;
+  const auto shares = [&](const Judgement& leading, int count) {
+    Shares all;
+    for (const auto& [rival, share] : shared_by_rivals(among, leading, count))
+      all.emplace_back(rival - judgements.data(), share);
     return all;
   };
-  using Shares = std::vector<std::pair<std::ptrdiff_t, int>>;
-  EXPECT_EQ(shares(16), (Shares{{1, 4}, {3, 2}, {4, 1}, {5, 1}}));
-  for (std::size_t k = 1; k < d.judgements.size(); ++k) d.judgements[k].probability = 0;
-  EXPECT_TRUE(shares(16).empty());
+  EXPECT_EQ(shares(judgements[0], 16), (Shares{{1, 4}, {2, 2}, {3, 1}, {4, 1}}));
+  EXPECT_EQ(shares(judgements[1], 16), (Shares{{0, 8}, {2, 2}, {3, 1}, {4, 1}}));
+  for (Judgement& j : judgements) j.probability = 0;
+  EXPECT_TRUE(shares(judgements[0], 16).empty());
 }
 
 TEST_F(DiagnosisOf, WhatAnEarlierOneSaysOfTheSameModelIsTakenOver) {

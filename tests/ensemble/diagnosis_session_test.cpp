@@ -55,6 +55,8 @@ class FormulaSimulator {
                              "chi_ring3",         "profile_25", "spread_95"};
       if (scenario["effects"] && scenario["effects"].size() == 2)
         (cohesion > 0 && twisting > 0 ? with_both : with_two_others).insert(request.scenario);
+      if (request.seed > 700'000 && scenario["effects"] && !scenario["effects"][fits_fail_with])
+        fits_of_others.insert(request.scenario);
       for (int k = 0; k < 6; ++k) {
         const double normal = std::sqrt(-2 * std::log(1 - random.uniform())) *
                               std::cos(2 * std::numbers::pi * random.uniform());
@@ -73,10 +75,11 @@ class FormulaSimulator {
   }
   int asked = 0, with_effects = 0;
   std::set<std::string> with_both,
-      with_two_others;                  ///< scenarios with cohesion and twisting, with other pairs
-  double together = 0;                  ///< what cohesion and twisting do beyond what each does alone
-  std::string fits_fail_with = "none";  ///< an effect with which simulations of fitted models fail
-  double fits_are_off_by = 0;           ///< what simulations of fitted models differ by from the formulas
+      with_two_others;                   ///< scenarios with cohesion and twisting, with other pairs
+  std::set<std::string> fits_of_others;  ///< scenarios with effects whose fits do not fail
+  double together = 0;                   ///< what cohesion and twisting do beyond what each does alone
+  std::string fits_fail_with = "none";   ///< an effect with which simulations of fitted models fail
+  double fits_are_off_by = 0;            ///< what simulations of fitted models differ by from the formulas
 };
 
 class Session : public testing::Test {
@@ -143,6 +146,16 @@ class Session : public testing::Test {
   DiagnosisModel model;
   FormulaSimulator simulator;
 };
+
+TEST_F(Session, ThreadsChangeNothing) {
+  const JoinedData data = data_of({{"cohesion"}, 6, 5, 0.5, 3, ""});
+  DiagnosisSession alone(model, data, {}, kAssets), shared(model, data, {}, kAssets, 4);
+  const DiagnosisOutcome a = alone.run(std::ref(simulator)), b = shared.run(std::ref(simulator));
+  EXPECT_EQ(a.simulations, b.simulations);
+  ASSERT_EQ(a.diagnosis.judgements.size(), b.diagnosis.judgements.size());
+  for (std::size_t k = 0; k < a.diagnosis.judgements.size(); ++k)
+    EXPECT_EQ(a.diagnosis.judgements[k].probability, b.diagnosis.judgements[k].probability);
+}
 
 TEST_F(Session, NamesTheEffectThatATwinHides) {
   double with = 0, without = 0;  // chi-square of four simulations each, which scatters: of all three together
@@ -221,6 +234,7 @@ TEST_F(Session, ACalibrationThatItsOwnSimulationsContradictIsNotSaid) {
 TEST_F(Session, WhatCannotBeSimulatedAtItsFitIsNotNamed) {
   simulator.fits_fail_with = "cohesion";
   const DiagnosisOutcome o = diagnosed({{"cohesion"}, 6, 5, 0.5, 3, ""});
+  EXPECT_GT(simulator.fits_of_others.size(), 10u) << "it does not keep others from being explored";
   EXPECT_THAT(o.notes, testing::Contains(HasSubstr("cohesion could not be tried by full simulations")));
   for (const std::size_t k : o.diagnosis.verdict.named)
     EXPECT_THAT(o.diagnosis.judgements[k].hypothesis.effects, testing::Not(testing::Contains(0u)));
