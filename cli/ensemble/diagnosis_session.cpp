@@ -82,13 +82,6 @@ bool same(const DiagnosisVerdict& a, const DiagnosisVerdict& b, const Diagnosis&
   return true;
 }
 
-// The most probable judgement with effects, whether it explains the data or not.
-const Judgement* best_effect(const Diagnosis& d) {
-  for (const Judgement& j : d.judgements)
-    if (!j.hypothesis.effects.empty()) return &j;
-  return nullptr;
-}
-
 // The first of those that are named.
 const Judgement* named_first(const Diagnosis& d) {
   return d.verdict.named.empty() ? nullptr : &d.judgements[d.verdict.named.front()];
@@ -102,7 +95,13 @@ std::vector<const Judgement*> open_to_simulation(const Diagnosis& d, const Tried
   return all;
 }
 
-// The first of them, its rivals, and what would be named, which may be another: a hypothesis of which little
+// The first of them, whether it explains the data or not.
+const Judgement* leading(const Diagnosis& d, const TriedModels& tried) {
+  const std::vector<const Judgement*> open = open_to_simulation(d, tried);
+  return open.empty() ? nullptr : open.front();
+}
+
+// The leading one, its rivals, and what would be named, which may be another: a hypothesis of which little
 // was simulated explains almost anything.
 std::vector<const Judgement*> worth_simulating(const std::vector<const Judgement*>& open,
                                                const Judgement* named) {
@@ -472,7 +471,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     }
     // Once a pair leads they stay, and have rounds of their own: there are many of them, and little was
     // simulated of each.
-    if (const Judgement* best = best_effect(d);
+    if (const Judgement* best = leading(d, tried);
         pairs != Pairs::always && best != nullptr && best->hypothesis.effects.size() > 1) {
       pairs = Pairs::always;
       last_round = outcome.rounds + model_.simulations.rounds;
@@ -486,7 +485,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     std::vector<std::size_t> known;
     for (const auto& runs : learnt_) known.push_back(runs.size());
     if (!one_round(d, model, tried, run, outcome)) {
-      outcome.settled = true;
+      outcome.settled = named == nullptr || tried.bears_out(*named);
       break;
     }
     compare(model, known);
@@ -495,7 +494,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     const bool unchanged = same(d.verdict, fresh.verdict, d, fresh);
     d = std::move(fresh);
     outcome.settled = unchanged && tried.up_to_date(d.calibration);
-    for (const Judgement* j : {best_effect(d), named_first(d)})
+    for (const Judgement* j : {leading(d, tried), named_first(d)})
       if (j != nullptr && tried.more_than_calibration())
         outcome.settled = outcome.settled && tried.up_to_date(*j);
     if (const Judgement* j = named_first(d)) outcome.settled = outcome.settled && tried.bears_out(*j);
@@ -513,7 +512,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     outcome.held_out_augmented = held_out(space_, d, model, named->hypothesis);
   }
   for (const auto& [effects, failure] : tried.failures())
-    outcome.notes.push_back(fmt::format("{} could not be tried by full simulations: {}",
+    outcome.notes.push_back(fmt::format("{} could not be tried by full simulations at its last fit: {}",
                                         name_of(space_, {effects, false, 0}), failure.why));
   outcome.diagnosis = std::move(d);
   if (outcome.diagnosis.verdict.kind == DiagnosisVerdict::Kind::group) outcome.next = tell_apart(outcome);

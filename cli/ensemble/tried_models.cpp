@@ -28,6 +28,7 @@ bool TriedModels::simulate(const Judgement& j) {
 void TriedModels::simulate_again(const Judgement& j) {
   SimulatedModel fresh = simulate_(j.best);  // an entry only if that did not throw
   models_[j.hypothesis.effects].push_back(std::move(fresh));
+  failures_.erase(j.hypothesis.effects);
 }
 
 bool TriedModels::up_to_date(const Judgement& j) const {

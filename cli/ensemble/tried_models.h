@@ -53,7 +53,7 @@ class TriedModels {
   /// fit does.
   bool may_be_said(const Judgement& judgement) const;
 
-  /// Why fits could not be simulated, the last of each hypothesis, by its effects.
+  /// Why the last fits of hypotheses could not be simulated, by their effects.
   struct Failure {
     ModelPoint at;
     std::string why;

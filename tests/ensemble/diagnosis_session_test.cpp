@@ -235,7 +235,7 @@ TEST_F(Session, WhatCannotBeSimulatedAtItsFitIsNotNamed) {
   simulator.fits_fail_with = "cohesion";
   const DiagnosisOutcome o = diagnosed({{"cohesion"}, 6, 5, 0.5, 3, ""});
   EXPECT_GT(simulator.fits_of_others.size(), 10u) << "it does not keep others from being explored";
-  EXPECT_THAT(o.notes, testing::Contains(HasSubstr("cohesion could not be tried by full simulations")));
+  EXPECT_THAT(o.notes, testing::Contains(HasSubstr("cohesion could not be tried by full simulations at its last fit")));
   for (const std::size_t k : o.diagnosis.verdict.named)
     EXPECT_THAT(o.diagnosis.judgements[k].hypothesis.effects, testing::Not(testing::Contains(0u)));
 }

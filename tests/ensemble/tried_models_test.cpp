@@ -100,6 +100,7 @@ TEST_F(Tried, WhatCannotBeSimulatedIsTriedAgainWhenItHasMoved) {
   EXPECT_TRUE(tried.simulate(effect()));
   EXPECT_TRUE(tried.may_be_said(effect()));
   EXPECT_TRUE(tried.contradicted().empty());
+  EXPECT_TRUE(tried.failures().empty());
 }
 
 TEST_F(Tried, WhatWasBorneOutIsNotTakenBackByAFitThatCannotBeSimulated) {
