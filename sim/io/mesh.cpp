@@ -226,8 +226,8 @@ std::size_t read_with_assimp(const fs::path& file, const std::string& extension,
   if (scene != nullptr && has_polygons(*scene)) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   if (scene == nullptr) {
     const std::string words = importer.GetErrorString();
-    if (words.find("bad_alloc") != std::string::npos)
-      throw std::bad_alloc();  // of the machine, not of the file
+    // Of the machine, not of the file, whose words other messages quote.
+    if (words == "std::bad_alloc" || words == "std::exception: std::bad_alloc") throw std::bad_alloc();
     throw std::runtime_error(words);
   }
   if (scene->mRootNode == nullptr) return 0;
