@@ -31,14 +31,18 @@ void TriedModels::simulate_again(const Judgement& j) {
   failures_.erase(j.hypothesis.effects);
 }
 
+bool TriedModels::is_fit(const ModelPoint& at, const Judgement& j) const {
+  return space_.distance(at, j.best) <= kMoved;
+}
+
 bool TriedModels::up_to_date(const Judgement& j) const {
   const SimulatedModel* there = last(j);
-  return failed(j) || (there != nullptr && space_.distance(there->at, j.best) <= kMoved);
+  return failed(j) || (there != nullptr && is_fit(there->at, j));
 }
 
 bool TriedModels::failed(const Judgement& j) const {
   const auto there = failures_.find(j.hypothesis.effects);
-  return there != failures_.end() && space_.distance(there->second.at, j.best) <= kMoved;
+  return there != failures_.end() && is_fit(there->second.at, j);
 }
 
 const SimulatedModel* TriedModels::last(const Judgement& j) const {
@@ -59,7 +63,7 @@ Gap TriedModels::gap_of(const SimulatedModel& each) const {
 
 bool TriedModels::contradicts(const Judgement& j) const {
   const SimulatedModel* there = last(j);
-  return there != nullptr && space_.distance(there->at, j.best) <= kMoved && gap_of(*there).p <= kFitsAbove;
+  return there != nullptr && is_fit(there->at, j) && gap_of(*there).p <= kFitsAbove;
 }
 
 bool TriedModels::bears_out(const Judgement& j) const {

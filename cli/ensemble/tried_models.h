@@ -61,6 +61,9 @@ class TriedModels {
   const std::map<std::vector<std::size_t>, Failure>& failures() const { return failures_; }
 
  private:
+  // The fit has not moved from there.
+  bool is_fit(const ModelPoint& at, const Judgement& judgement) const;
+
   const ModelSpace& space_;
   const Diagnosis& diagnosis_;
   const LearntModel& model_;
