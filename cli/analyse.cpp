@@ -6,9 +6,9 @@
 #include <cmath>
 #include <regex>
 
-#include "analysis/output_units.h"
-#include "analysis/outputs.h"
-#include "analysis/report_text.h"
+#include "analysis/report/report_text.h"
+#include "analysis/results/output_units.h"
+#include "analysis/results/outputs.h"
 #include "cli/commands.h"
 #include "cli/ensemble/dataset_write.h"
 #include "cli/output_folder.h"

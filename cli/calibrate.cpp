@@ -8,7 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "analysis/sweep_chart.h"
+#include "analysis/report/sweep_chart.h"
 #include "cli/commands.h"
 #include "cli/ensemble/equivalence_fit.h"
 #include "cli/ensemble/output_scope.h"

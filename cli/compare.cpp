@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "analysis/summary.h"
+#include "analysis/results/summary.h"
 #include "cli/commands.h"
 #include "cli/table.h"
 

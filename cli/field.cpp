@@ -10,7 +10,7 @@
 #include "analysis/field/field_analysis.h"
 #include "analysis/field/field_report.h"
 #include "analysis/field/printed_values.h"
-#include "analysis/output_units.h"
+#include "analysis/results/output_units.h"
 #include "cli/commands.h"
 #include "cli/ensemble/field_dataset.h"
 #include "cli/output_folder.h"

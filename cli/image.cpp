@@ -10,8 +10,8 @@
 
 #include "analysis/image/image_report.h"
 #include "analysis/image/picture_file.h"
-#include "analysis/report_text.h"
-#include "analysis/results.h"
+#include "analysis/report/report_text.h"
+#include "analysis/results/results.h"
 #include "cli/commands.h"
 #include "cli/ensemble/dataset_write.h"
 #include "cli/ensemble/scenario_patch.h"

@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "analysis/output_units.h"
+#include "analysis/results/output_units.h"
 #include "sim/io/input_text.h"
 
 namespace {

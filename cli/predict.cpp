@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "analysis/emulator.h"
+#include "analysis/statistics/emulator.h"
 #include "cli/commands.h"
 #include "cli/ensemble/output_scope.h"
 #include "cli/ensemble/sweep_results.h"

@@ -6,7 +6,7 @@
 
 #include "analysis/image/picture_file.h"
 #include "analysis/image/render_photo.h"
-#include "analysis/slope_profile.h"
+#include "analysis/pile/slope_profile.h"
 #include "cli/commands.h"
 #include "cli/picture_options.h"
 #include "sim/io/input_text.h"

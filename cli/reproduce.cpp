@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "analysis/reproduction.h"
+#include "analysis/cases/reproduction.h"
 #include "cli/commands.h"
 #include "cli/ensemble/sweep_results.h"
 #include "cli/ensemble_console.h"

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "analysis/half_cone.h"
-#include "analysis/outputs.h"
-#include "analysis/slope_profile.h"
-#include "analysis/toe_share.h"
+#include "analysis/pile/half_cone.h"
+#include "analysis/pile/slope_profile.h"
+#include "analysis/pile/toe_share.h"
+#include "analysis/results/outputs.h"
 #include "scree_version.h"
 #include "sim/scene/ground.h"
 #include "sim/scene/watch.h"

@@ -1,6 +1,6 @@
 #pragma once
 // From what the simulation ends with to what analysis makes of it.
-#include "analysis/results.h"
+#include "analysis/results/results.h"
 #include "sim/scene/run.h"
 #include "sim/scene/scenario.h"
 

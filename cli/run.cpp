@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <thread>
 
-#include "analysis/conductivity_table.h"
-#include "analysis/report.h"
-#include "analysis/summary.h"
+#include "analysis/report/conductivity_table.h"
+#include "analysis/report/report.h"
+#include "analysis/results/summary.h"
 #include "cli/commands.h"
 #include "cli/output_folder.h"
 #include "cli/progress.h"

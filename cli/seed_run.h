@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/results.h"
+#include "analysis/results/results.h"
 #include "cli/checkpoints.h"
 #include "cli/progress.h"
 #include "sim/scene/scenario.h"

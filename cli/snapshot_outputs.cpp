@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "analysis/outputs.h"
+#include "analysis/results/outputs.h"
 #include "cli/results_of.h"
 
 namespace scree {

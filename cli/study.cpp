@@ -1,5 +1,5 @@
 // scree study: disposal options of one rock, ranked.
-#include "analysis/study.h"
+#include "analysis/cases/study.h"
 
 #include <fmt/format.h>
 

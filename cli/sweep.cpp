@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "analysis/sweep_chart.h"
+#include "analysis/report/sweep_chart.h"
 #include "cli/commands.h"
 #include "cli/ensemble/output_scope.h"
 #include "cli/ensemble/sweep_results.h"

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "analysis/report_text.h"
-#include "analysis/summary.h"
+#include "analysis/report/report_text.h"
+#include "analysis/results/summary.h"
 
 namespace scree {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 // Results as text.
-#include "analysis/results.h"
+#include "analysis/results/results.h"
 
 namespace scree {
 

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "analysis/output_units.h"
+#include "analysis/results/output_units.h"
 #include "cli/commands.h"
 #include "cli/ensemble/dataset_file.h"
 #include "sim/scene/estimate.h"

@@ -12,7 +12,7 @@ namespace scree {
 /// A number that was measured, and where.
 struct MeasuredValue {
   std::size_t experiment = 0;  ///< index into Measurements::experiments
-  std::string output;          ///< a name of analysis/outputs.h
+  std::string output;          ///< a name of analysis/results/outputs.h
   std::string label;           ///< experiment/output
   double value = 0;
   double uncertainty = 0;     ///< standard uncertainty as stated

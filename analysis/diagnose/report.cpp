@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/diagnose/words.h"
-#include "analysis/report_page.h"
-#include "analysis/report_text.h"
+#include "analysis/report/report_page.h"
+#include "analysis/report/report_text.h"
 #include "sim/io/text_file.h"
 
 namespace scree {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/report_text.h"
+#include "analysis/report/report_text.h"
 
 namespace scree {
 namespace {

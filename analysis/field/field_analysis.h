@@ -9,7 +9,7 @@
 #include "analysis/field/origin_fit.h"
 #include "analysis/field/slope_gradings.h"
 #include "analysis/field/spread.h"
-#include "analysis/permeability.h"
+#include "analysis/pile/permeability.h"
 
 namespace scree {
 
@@ -22,15 +22,15 @@ struct FieldQuantity {
 
 /// d10, d15, d30, d50, d60, d80, d90, d95 (m), cu, cc, d90_over_d15; and against the original material, which
 /// is the picture's own whole slope or a grading given: d10_rel, d50_rel, d80_rel, d90_rel, d95_rel, chi, and
-/// conductivities at equal void ratio ksat_kcm_rel, ksat_taylor_rel (analysis/permeability.h), and the same
-/// of both gradings with the fines of the sieved sample, ksat_kcm_rel_filled, ksat_taylor_rel_filled;
+/// conductivities at equal void ratio ksat_kcm_rel, ksat_taylor_rel (analysis/pile/permeability.h), and the
+/// same of both gradings with the fines of the sieved sample, ksat_kcm_rel_filled, ksat_taylor_rel_filled;
 /// chi_given as it stands in the table.
 const std::vector<FieldQuantity>& field_quantities();
 /// The one of this name; null if there is none.
 const FieldQuantity* field_quantity(const std::string& name);
 
 /// Degree of segregation of a grading against the original, (log d - log d_0) / (log d_CQ - log d_0), as in
-/// analysis/segregation.h.
+/// analysis/pile/segregation.h.
 double segregation_degree(const Grading& grading, const Grading& original);
 
 /// What formulae of conductivity need of a grading, at a void ratio.

@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "analysis/field/field_tables.h"
-#include "analysis/profile_chart.h"
-#include "analysis/report_text.h"
-#include "analysis/section_canvas.h"
+#include "analysis/report/profile_chart.h"
+#include "analysis/report/report_text.h"
+#include "analysis/report/section_canvas.h"
 
 namespace scree {
 namespace {

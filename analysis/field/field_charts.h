@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "analysis/field/field_analysis.h"
-#include "analysis/pictures.h"
+#include "analysis/report/pictures.h"
 
 namespace scree {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/permeability.h"
+#include "analysis/pile/permeability.h"
 
 namespace scree {
 namespace {

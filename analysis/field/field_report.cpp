@@ -8,8 +8,8 @@
 
 #include "analysis/field/field_charts.h"
 #include "analysis/field/field_tables.h"
-#include "analysis/report_page.h"
-#include "analysis/report_text.h"
+#include "analysis/report/report_page.h"
+#include "analysis/report/report_text.h"
 #include "sim/io/text_file.h"
 
 namespace scree {

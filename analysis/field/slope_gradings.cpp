@@ -9,7 +9,7 @@
 #include <regex>
 #include <stdexcept>
 
-#include "analysis/output_units.h"
+#include "analysis/results/output_units.h"
 #include "sim/io/input_text.h"
 
 namespace scree {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "analysis/field/anderson_darling.h"
-#include "analysis/results.h"
+#include "analysis/results/results.h"
 
 namespace scree {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-#include "analysis/results.h"
+#include "analysis/results/results.h"
 
 namespace scree {
 namespace {

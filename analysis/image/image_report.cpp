@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "analysis/profile_chart.h"
-#include "analysis/report_page.h"
-#include "analysis/report_text.h"
+#include "analysis/report/profile_chart.h"
+#include "analysis/report/report_page.h"
+#include "analysis/report/report_text.h"
 #include "sim/io/text_file.h"
 
 namespace scree {

@@ -10,7 +10,7 @@
 
 #include "analysis/image/grain_shape.h"
 #include "analysis/image/picture_file.h"
-#include "analysis/segregation.h"
+#include "analysis/pile/segregation.h"
 #include "sim/material/random.h"
 
 namespace scree {

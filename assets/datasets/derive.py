@@ -6,7 +6,7 @@
 TABLES is the folder of CSV tables extracted from the thesis; OUTPUT defaults to the folder of this script.
 Writes NAME/observables.csv and NAME/covariance.csv in SI units; the dataset.yaml beside them are written by hand.
 chi of the laboratory sections is not printed for each test: it is computed from their passing curves as
-analysis/segregation.h does, against assets/gradings/Lab0.csv (mean and deviation come out as printed, line 1549).
+analysis/pile/segregation.h does, against assets/gradings/Lab0.csv (mean and deviation come out as printed, line 1549).
 """
 import csv
 import math

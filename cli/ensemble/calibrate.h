@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "analysis/calibration.h"
+#include "analysis/statistics/calibration.h"
 #include "cli/ensemble/calibration_file.h"
 
 namespace scree {

@@ -7,7 +7,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "analysis/emulator.h"
+#include "analysis/statistics/emulator.h"
 #include "sim/material/grading.h"
 #include "sim/scene/scenario_values.h"
 

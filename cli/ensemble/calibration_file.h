@@ -15,7 +15,7 @@ struct CalibrationSpec {
   std::vector<std::uint64_t> seeds;
 
   struct Target {
-    std::string output;  ///< name of a run's number (analysis/outputs.h)
+    std::string output;  ///< name of a run's number (analysis/results/outputs.h)
     double value = 0, uncertainty = 0;
     std::filesystem::path scenario;  ///< the one that gives it
   };

@@ -27,8 +27,8 @@ struct Dataset {
 
   struct Observable {
     std::size_t experiment = 0;  ///< index into `experiments`
-    std::string output;          ///< a name of analysis/outputs.h, which the scenario gives
-    double value = 0;            ///< in the output's own unit (analysis/output_units.h), as all below
+    std::string output;          ///< a name of analysis/results/outputs.h, which the scenario gives
+    double value = 0;            ///< in the output's own unit (analysis/results/output_units.h), as all below
     double uncertainty = 0;      ///< standard uncertainty of the value, above 0
     std::optional<double> std;   ///< between repeats, where given
     std::optional<int> repeats;  ///< where given

@@ -8,7 +8,7 @@
 #include <functional>
 #include <map>
 
-#include "analysis/output_units.h"
+#include "analysis/results/output_units.h"
 #include "cli/ensemble/output_scope.h"
 #include "sim/io/input_text.h"
 #include "sim/scene/scenario_values.h"

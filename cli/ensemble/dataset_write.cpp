@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "analysis/output_units.h"
+#include "analysis/results/output_units.h"
 #include "sim/io/text_file.h"
 
 namespace scree {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/results.h"
+#include "analysis/results/results.h"
 
 namespace scree {
 

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "analysis/summary.h"
+#include "analysis/results/summary.h"
 #include "sim/io/checkpoint_file.h"
 #include "sim/io/text_file.h"
 

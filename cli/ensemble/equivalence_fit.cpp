@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/emulator.h"
-#include "analysis/results.h"
+#include "analysis/results/results.h"
+#include "analysis/statistics/emulator.h"
 #include "cli/ensemble/design.h"
 #include "sim/scene/scenario_values.h"
 

@@ -2,7 +2,7 @@
 // Which outputs a scenario gives, known before it is simulated.
 #include <string>
 
-#include "analysis/outputs.h"
+#include "analysis/results/outputs.h"
 #include "cli/ensemble/sweep_file.h"
 
 namespace scree {

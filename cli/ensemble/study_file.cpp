@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "analysis/study.h"
+#include "analysis/cases/study.h"
 #include "cli/ensemble/file_reader.h"
 #include "sim/scene/scenario_read.h"
 

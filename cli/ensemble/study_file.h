@@ -30,7 +30,7 @@ struct StudyResult {
 
 /// Reads a study file:
 ///   seeds: [1, 2, 3]      default: those of each scenario
-///   rank_by: chi_range    a criterion of analysis/study.h
+///   rank_by: chi_range    a criterion of analysis/cases/study.h
 ///   currency: USD
 ///   options:
 ///     - name: push dumping

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "analysis/results.h"
+#include "analysis/results/results.h"
 #include "cli/ensemble/design.h"
 #include "cli/ensemble/file_reader.h"
 #include "sim/scene/scenario_values.h"

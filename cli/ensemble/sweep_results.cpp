@@ -10,7 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "analysis/outputs.h"
+#include "analysis/results/outputs.h"
 #include "cli/ensemble/run_request.h"
 #include "sim/io/text_file.h"
 #include "sim/material/input_bytes.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/finished_runs.h"
+#include "analysis/results/finished_runs.h"
 #include "cli/ensemble/sweep_file.h"
 #include "sim/io/results_store.h"
 

@@ -1,6 +1,6 @@
 #pragma once
-// How a finished pile is measured, where that differs from the truth (analysis/counted_grains.h). With the
-// defaults grains are counted as they are.
+// How a finished pile is measured, where that differs from the truth (analysis/pile/counted_grains.h). With
+// the defaults grains are counted as they are.
 
 namespace scree {
 
@@ -14,7 +14,7 @@ struct Measurement {
   double reference_diameter = 1;  ///< m
   /// Borders between sections, rings and cells lie this share of a section's length too far down.
   double border_shift = 0;
-  /// Share (0 to 1) of the surface (analysis/seen_surface.h) in the grading of a slope's section.
+  /// Share (0 to 1) of the surface (analysis/pile/seen_surface.h) in the grading of a slope's section.
   double surface_share = 0;
   /// Share (0 to 1) of the pile itself in the grading that its parts are compared with, beside the rock as
   /// dumped.

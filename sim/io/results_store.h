@@ -34,7 +34,7 @@ struct StoredResult {
   std::string version;  ///< of the program that made it
   std::string message;  ///< why it failed
   double wall_seconds = 0;
-  std::map<std::string, double> outputs;  ///< by name (analysis/outputs.h)
+  std::map<std::string, double> outputs;  ///< by name (analysis/results/outputs.h)
   bool at_rest() const {
     const auto found = outputs.find("at_rest");
     return found == outputs.end() || found->second != 0;

@@ -1,5 +1,5 @@
 // The table of a simulated pile's conductivity.
-#include "analysis/conductivity_table.h"
+#include "analysis/report/conductivity_table.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // The emulator and the posterior against functions that are known.
-#include "analysis/emulator.h"
+#include "analysis/statistics/emulator.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "analysis/calibration.h"
+#include "analysis/statistics/calibration.h"
 
 namespace scree {
 namespace {

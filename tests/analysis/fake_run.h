@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "analysis/results.h"
+#include "analysis/results/results.h"
 
 namespace scree {
 

@@ -1,5 +1,5 @@
 // Flows of grains whose velocities are known.
-#include "analysis/flow.h"
+#include "analysis/pile/flow.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // A half cone with known cells.
-#include "analysis/half_cone.h"
+#include "analysis/pile/half_cone.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Rings, form and runout of heaps whose shape is known.
-#include "analysis/heap_shape.h"
+#include "analysis/pile/heap_shape.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "analysis/outputs.h"
+#include "analysis/results/outputs.h"
 #include "sim/material/random.h"
 
 namespace scree {

@@ -1,5 +1,5 @@
 // Pictures of a section: that they are drawn, whatever lies in it.
-#include "analysis/inside_pictures.h"
+#include "analysis/report/inside_pictures.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -7,8 +7,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "analysis/flow_picture.h"
-#include "analysis/section_canvas.h"
+#include "analysis/report/flow_picture.h"
+#include "analysis/report/section_canvas.h"
 #include "tests/analysis/fake_run.h"
 
 namespace scree {

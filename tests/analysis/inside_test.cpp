@@ -1,5 +1,5 @@
 // Cells of sections through packings that are known.
-#include "analysis/inside.h"
+#include "analysis/pile/inside.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "analysis/segregation.h"
-#include "analysis/surface_height.h"
+#include "analysis/pile/segregation.h"
+#include "analysis/pile/surface_height.h"
 
 namespace scree {
 namespace {

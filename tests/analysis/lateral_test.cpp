@@ -1,5 +1,5 @@
 // Segregation across a slope.
-#include "analysis/lateral.h"
+#include "analysis/pile/lateral.h"
 
 #include <gtest/gtest.h>
 

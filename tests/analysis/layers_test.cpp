@@ -1,5 +1,5 @@
 // Layers that are laid by hand on a slope of 45 degrees.
-#include "analysis/layers.h"
+#include "analysis/pile/layers.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "analysis/toe_share.h"
+#include "analysis/pile/toe_share.h"
 
 namespace scree {
 namespace {

@@ -1,4 +1,4 @@
-#include "analysis/mass_quantile.h"
+#include "analysis/pile/mass_quantile.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Tests of sign, slope and order against numbers of textbooks or worked out by hand.
-#include "analysis/ordered_trend.h"
+#include "analysis/statistics/ordered_trend.h"
 
 #include <gtest/gtest.h>
 

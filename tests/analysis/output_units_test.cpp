@@ -1,5 +1,5 @@
 // Units of outputs, told by their names.
-#include "analysis/output_units.h"
+#include "analysis/results/output_units.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Conductivity formulae against numbers worked by hand.
-#include "analysis/permeability.h"
+#include "analysis/pile/permeability.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/report.h"
+#include "analysis/report/report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "analysis/lateral_table.h"
-#include "analysis/report_text.h"
+#include "analysis/report/lateral_table.h"
+#include "analysis/report/report_text.h"
 #include "tests/analysis/fake_run.h"
 
 namespace scree {

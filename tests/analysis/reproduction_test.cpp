@@ -1,5 +1,5 @@
 // The cases of the thesis beside ours.
-#include "analysis/reproduction.h"
+#include "analysis/cases/reproduction.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Volumes of spheres in boxes against formulae.
-#include "analysis/sphere_box.h"
+#include "analysis/pile/sphere_box.h"
 
 #include <gtest/gtest.h>
 

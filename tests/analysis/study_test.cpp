@@ -1,12 +1,12 @@
 // Disposal options held against each other.
-#include "analysis/study.h"
+#include "analysis/cases/study.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "analysis/welch.h"
+#include "analysis/statistics/welch.h"
 
 namespace scree {
 namespace {

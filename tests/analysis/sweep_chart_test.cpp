@@ -1,5 +1,5 @@
 // Pictures of sweeps: drawn, with what they are to show; the same map twice is the same picture.
-#include "analysis/sweep_chart.h"
+#include "analysis/report/sweep_chart.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <map>
 
-#include "analysis/outputs.h"
+#include "analysis/results/outputs.h"
 #include "scree_version.h"
 
 namespace scree {

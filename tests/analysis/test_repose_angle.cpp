@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/repose_angle.h"
+#include "analysis/pile/repose_angle.h"
 #include "sim/material/random.h"
 
 namespace scree {

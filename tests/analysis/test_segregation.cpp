@@ -8,7 +8,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "analysis/segregation.h"
+#include "analysis/pile/segregation.h"
 #include "scree_version.h"
 #include "sim/material/grading.h"
 

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <random>
 
-#include "analysis/results.h"
+#include "analysis/results/results.h"
 #include "scree_version.h"
 
 namespace scree {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <xxhash.h>
 
-#include "analysis/segregation.h"
+#include "analysis/pile/segregation.h"
 #include "cli/ensemble/run_request.h"
 #include "scree_version.h"
 #include "sim/scene/run.h"

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "analysis/reproduction.h"
-#include "analysis/summary.h"
+#include "analysis/cases/reproduction.h"
+#include "analysis/results/summary.h"
 #include "cli/ensemble/calibration_file.h"
 #include "cli/ensemble/dataset_file.h"
 #include "cli/ensemble/dataset_tables.h"

@@ -13,8 +13,8 @@
 
 #include <stdexcept>
 
-#include "analysis/repose_angle.h"
-#include "analysis/results.h"
+#include "analysis/pile/repose_angle.h"
+#include "analysis/results/results.h"
 #include "cli/ensemble/sweep_results.h"
 #include "scree_version.h"
 #include "sim/scene/run.h"

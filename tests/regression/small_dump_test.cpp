@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "analysis/segregation.h"
+#include "analysis/pile/segregation.h"
 #include "scree_version.h"
 #include "sim/scene/run.h"
 #include "sim/scene/scenario.h"

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <thread>
 
-#include "analysis/repose_angle.h"
+#include "analysis/pile/repose_angle.h"
 #include "cli/ensemble/sweep_results.h"
 #include "scree_version.h"
 #include "sim/scene/run.h"

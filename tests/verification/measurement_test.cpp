@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/counted_grains.h"
-#include "analysis/half_cone.h"
-#include "analysis/heap_shape.h"
-#include "analysis/lateral.h"
-#include "analysis/seen_surface.h"
+#include "analysis/pile/counted_grains.h"
+#include "analysis/pile/half_cone.h"
+#include "analysis/pile/heap_shape.h"
+#include "analysis/pile/lateral.h"
+#include "analysis/pile/seen_surface.h"
 #include "sim/effects/effect.h"
 
 namespace scree {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/outputs.h"
+#include "analysis/results/outputs.h"
 
 namespace scree {
 

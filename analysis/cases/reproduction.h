@@ -1,0 +1,101 @@
+#pragma once
+// The cases of the thesis beside ours: every printed value, every printed difference between cases, figures.
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/results/finished_runs.h"
+#include "analysis/results/outputs.h"
+#include "analysis/statistics/ordered_trend.h"
+
+namespace scree {
+
+/// One case and its finished runs.
+struct CaseResult {
+  std::string name, title;
+  FinishedRuns runs;
+  double largest_overlap = 0;  ///< over the smaller radius, of all its runs
+  double lost_mass = 0;        ///< t, of all its runs
+  std::vector<Comparison> comparison;
+  std::optional<double> blade_velocity;  ///< m/s, of push dumping
+};
+
+/// Whether rock is fine at the crest and coarse at the toe of a case with six sections.
+struct SegregationSigns {
+  std::string case_name;
+  MeanStd crest, toe;  ///< chi of S1 and S6
+  double p_crest = 0,
+         p_toe = 0;  ///< one-sided: of chi(S1) < 0, of chi(S6) > 0 (p_of_sign); NaN with one seed
+  int as_expected = 0, signs = 0;  ///< of the two signs of each seed
+  MeanStd zero;                    ///< x/L where chi changes sign, of the seeds in which it does once
+  std::optional<double> printed_zero;
+};
+/// Those of the cases that have runs with six sections.
+std::vector<SegregationSigns> segregation_signs(const std::vector<CaseResult>& cases);
+
+/// How a number of a pile changes with the velocity of the blade, over all seeds of all cases of push
+/// dumping.
+struct VelocityTrend {
+  PileValue value;
+  std::string first, last;  ///< cases of the slowest and the fastest blade
+  std::size_t runs = 0;
+  Slope here;                ///< per m/s
+  JonckheereTerpstra order;  ///< groups by velocity
+  double printed_slope = 0;  ///< least squares over PFC3D's printed means; NaN without two
+  std::size_t printed_cases = 0;
+};
+/// Of chi and the D50 ratio at the crest; none unless there are three velocities.
+std::vector<VelocityTrend> velocity_trends(const std::vector<CaseResult>& cases);
+
+/// A difference that the thesis prints between two cases: `quantity` of `case_name` less that of `against`.
+struct Trend {
+  std::string case_name, against;
+  std::string quantity, section;  ///< as in ReferenceValue
+  double difference = 0;
+  bool relative = false;  ///< over the magnitude of the value of `against`
+  bool bound = false;     ///< the magnitude is printed to be at most `difference`
+  std::string source;
+};
+
+/// What seeds can say of a printed difference.
+enum class TrendVerdict {
+  unknown,     ///< fewer than two seeds of a case, or no scatter
+  agrees,      ///< beyond the scatter of seeds, in the printed direction, and the printed size is within the
+               ///< interval
+  other_size,  ///< beyond the scatter, in the printed direction, of another size
+  opposite,    ///< beyond the scatter, in the other direction
+  undecided,   ///< seeds alone may differ so much
+  within,      ///< of a bound: the whole interval lies within it
+  beyond,      ///< of a bound: the whole interval lies beyond it
+};
+
+/// A printed difference and ours.
+struct TrendComparison {
+  Trend trend;
+  double difference = 0;  ///< ours, of the means over seeds; NaN when unknown
+  double low = 0,
+         high = 0;  ///< its 95 % interval from the scatter of seeds (Welch; delta method for a ratio)
+  double p = 1;     ///< two-sided probability that seeds alone differ so much (Welch's t test)
+  TrendVerdict verdict = TrendVerdict::unknown;
+};
+
+/// Reads assets/reference/trends.csv (case,against,quantity,section,difference,relative,relation,source).
+/// Throws std::runtime_error `file:line: what is wrong`.
+std::vector<Trend> read_trends(const std::filesystem::path& file);
+
+/// The trends both of whose cases are there, in their order. Names of cases are compared without regard to
+/// upper and lower case.
+std::vector<TrendComparison> compare_trends(const std::vector<CaseResult>& cases,
+                                            const std::vector<Trend>& trends);
+
+/// What agrees and what does not, a line each.
+std::vector<std::string> reproduction_in_words(const std::vector<CaseResult>& cases,
+                                               const std::vector<TrendComparison>& trends);
+
+/// Writes folder/report.html with its figures, and these in folder/pictures. Throws std::runtime_error when
+/// gnuplot is missing or fails or a file cannot be written.
+void write_reproduction(const std::vector<CaseResult>& cases, const std::vector<TrendComparison>& trends,
+                        const std::filesystem::path& folder);
+
+}  // namespace scree

@@ -1,0 +1,81 @@
+#include "analysis/report/profile_chart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "analysis/report/pictures.h"
+
+namespace scree {
+namespace {
+
+// Okabe and Ito's colours, without yellow.
+constexpr std::array<const char*, 7> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                              "#e69f00", "#56b4e9", "#333333"};
+
+// Series are shifted sideways so that bars do not hide each other: by as much of x, all together at most.
+constexpr double kDodge = 0.014, kWidestDodge = 0.06;
+
+struct Look {
+  const char* name;
+  int point;
+  double size;
+};
+
+Look look(ChartSeries::Kind kind) {
+  switch (kind) {
+    case ChartSeries::Kind::pfc3d:
+      return {"PFC3D", 4, 0.9};
+    case ChartSeries::Kind::measured:
+      return {"measured", 8, 1.0};
+    case ChartSeries::Kind::ours:
+      break;
+  }
+  return {"here", 7, 0.5};
+}
+
+}  // namespace
+
+void draw(const ProfileChart& chart, const std::filesystem::path& file) {
+  const double count = static_cast<double>(chart.series.size()), middle = 0.5 * (count - 1);
+  const double dodge = count > 1 ? std::min(kDodge, kWidestDodge / (count - 1)) : 0;
+  std::set<std::string> cases;
+  for (const ChartSeries& series : chart.series) cases.insert(series.name);
+  std::string script, plots;
+  for (std::size_t k = 0; k < chart.series.size(); ++k) {
+    const ChartSeries& series = chart.series[k];
+    script += fmt::format("$s{} << END\n", k);
+    for (const auto& p : series.points)
+      script += fmt::format("{} {} {}\n", p.x + dodge * (static_cast<double>(k) - middle), p.y,
+                            std::isfinite(p.std) ? p.std : 0.0);
+    script += "END\n";
+    const Look shown = look(series.kind);
+    const char* colour = kColours[static_cast<std::size_t>(series.colour) % kColours.size()];
+    const std::string name =
+        gnuplot_quoted(cases.size() > 1 ? fmt::format("{}, {}", series.name, shown.name) : shown.name);
+    if (series.kind == ChartSeries::Kind::ours)
+      plots += fmt::format("{}$s{} using 1:2 with lines lc rgb '{}' lw 1.6 notitle",
+                           plots.empty() ? "" : ", ", k, colour);
+    // Bars by hand: gnuplot's own clear a disc around each point, which hides short ones.
+    plots += fmt::format(
+        "{0}$s{1} using 1:($2-$3):(0):(2*$3) with vectors nohead lw 1 lc rgb '{2}' notitle, "
+        "$s{1} using 1:2 with points pt {3} ps {4} lw 1 lc rgb '{2}' title {5}",
+        plots.empty() ? "" : ", ", k, colour, shown.point, shown.size, name);
+  }
+  script += chart_terminal(760, 440);
+  script += fmt::format(
+      "set title {}\nset xlabel {} offset 0,0.5\nset ylabel {}\nset key bmargin center horizontal Left "
+      "reverse\nset "
+      "xrange [0:1]\n",
+      gnuplot_quoted(chart.title), gnuplot_quoted(chart.x_label), gnuplot_quoted(chart.y_label));
+  if (chart.zero_line)
+    script += "set arrow 1 from graph 0, first 0 to graph 1, first 0 nohead lc rgb '#888888'\n";
+  script += "set offsets 0, 0, graph 0.06, graph 0.06\nplot " + plots + "\n";
+  run_gnuplot(script, file);
+}
+
+}  // namespace scree

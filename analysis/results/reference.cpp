@@ -1,0 +1,59 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/results/results.h"
+#include "sim/material/csv_table.h"
+
+namespace scree {
+
+namespace {
+
+// Makes a range of a bound and the other one of the same, if that is there.
+bool joined(const ReferenceValue& row, std::vector<ReferenceValue>& values) {
+  if (row.relation != "min" && row.relation != "max") return false;
+  for (ReferenceValue& other : values) {
+    if (other.case_name != row.case_name || other.quantity != row.quantity || other.section != row.section ||
+        other.kind != row.kind || other.relation != (row.relation == "min" ? "max" : "min"))
+      continue;
+    other.upper = std::max(row.value, other.value);
+    other.value = std::min(row.value, other.value);
+    other.relation = "range";
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<ReferenceValue> read_reference(const std::filesystem::path& file) {
+  CsvTable table(file, {"case", "quantity", "section", "kind", "value", "std", "unit", "relation", "source",
+                        "dumps", "rounding"});
+  std::vector<ReferenceValue> values;
+  while (table.next()) {
+    ReferenceValue row;
+    row.case_name = table.text("case");
+    row.quantity = table.text("quantity");
+    row.section = table.text("section");
+    row.kind = table.one_of("kind", {"pfc3d", "measured"});
+    row.value = table.number("value");
+    row.std = table.optional_number("std");
+    if (row.std && *row.std < 0) table.fail(fmt::format("std {} is below 0", *row.std));
+    row.rounding = table.optional_number("rounding").value_or(0);
+    if (row.rounding < 0) table.fail(fmt::format("rounding {} is below 0", row.rounding));
+    row.unit = table.one_of("unit", {"m", "t", "deg", "-"});
+    row.relation = table.one_of(
+        "relation", {"eq", "approx", "lt", "le", "gt", "min", "max", "mean", "median", "derived"});
+    row.source = table.text("source");
+    if (const auto dumps = table.optional_number("dumps")) {
+      if (*dumps < 1 || *dumps != std::floor(*dumps))
+        table.fail(fmt::format("dumps {} is no number of 1 or more", *dumps));
+      row.dumps = static_cast<int>(*dumps);
+    }
+    if (!joined(row, values)) values.push_back(std::move(row));
+  }
+  return values;
+}
+
+}  // namespace scree
