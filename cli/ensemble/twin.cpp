@@ -102,82 +102,122 @@ StrengthSearch search_amplitude(double asked, double end,
   return search;
 }
 
-}  // namespace
-
-Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::filesystem::path& asset_dir,
-               const RunThrough& design, const RunThrough& hidden) {
-  if (model.experiments.empty())
-    throw std::runtime_error(model.name + ": a twin needs the model's experiments and their observables");
-  const std::vector<Dataset::Experiment> experiments = experiments_of(model);
-  const ModelSpace space = space_of(model, experiments, {});
-  // The base model: its scatter, and what its parameters make up for.
-  std::vector<PlannedRun> plain = design_of(space, model.simulations);
-  std::erase_if(plain, [](const PlannedRun& run) { return !run.at.effects.empty(); });
-  std::vector<std::string> names;
-  std::vector<ExperimentRuns> planned;
-  for (const Dataset::Experiment& each : experiments) {
-    names.push_back(each.name);
-    planned.push_back(runs_of(model, space, each, plain, asset_dir));
+// The steps of make_twin, in their order; one source of chance goes through them.
+class TwinMaker {
+ public:
+  TwinMaker(const DiagnosisModel& model, const TwinSpec& spec, const std::filesystem::path& asset_dir,
+            const RunThrough& design, const RunThrough& hidden)
+      : model_(model),
+        spec_(spec),
+        asset_dir_(asset_dir),
+        hidden_(hidden),
+        experiments_(experiments_of(model)),
+        space_(space_of(model, experiments_, {})),
+        base_model_(learn_base_model(design)),
+        random_(spec.seed, 0, RandomPurpose::measurement) {
+    error_variances_ = variances_of_errors();
+    covariance_ = covariance_of_means();
   }
-  DesignRuns learnt;
-  const auto results = done(planned, design);
-  for (std::size_t e = 0; e < planned.size(); ++e)
-    learnt.push_back(gather(planned[e], results[e], model.experiments[e].observables).runs);
-  const LearntModel surface(space, names, learnt);
 
-  // Covariance of the means that will be measured.
-  Eigen::Index n = 0, first = 0;
-  for (const ModelExperiment& each : model.experiments)
-    n += static_cast<Eigen::Index>(each.observables.size());
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
-  std::vector<Eigen::VectorXd> errors;  // variances, by experiment
-  for (std::size_t e = 0; e < experiments.size(); ++e) {
-    Eigen::MatrixXd block = surface.surfaces()[e]->scatter();
-    errors.push_back(spec.noise * spec.noise * block.diagonal());
-    for (const auto& [name, error] : model.experiments[e].errors) {
-      const auto& all = model.experiments[e].observables;
-      errors.back()[std::find(all.begin(), all.end(), name) - all.begin()] = error * error;
+  Twin make() {
+    Twin twin;
+    ModelPoint& truth = twin.truth.at;
+    truth.base.resize(static_cast<Eigen::Index>(space_.base.size()));
+    for (double& x : truth.base) x = kInnerBase * random_.uniform(-1, 1);
+    std::vector<std::pair<EffectAt, double>> effects;  // and their strength
+    for (const std::string& name : spec_.effects) effects.push_back(hide(name, truth.base));
+    std::sort(effects.begin(), effects.end(),
+              [](const auto& a, const auto& b) { return a.first.effect < b.first.effect; });
+    for (const auto& [there, strength] : effects) {
+      truth.effects.push_back(there);
+      twin.truth.detectability.push_back(strength);
     }
-    block.diagonal() += errors.back();
-    covariance.block(first, first, block.rows(), block.rows()) = block / spec.repeats;
-    first += block.rows();
+    twin.data = measure(simulate(truth));
+    return twin;
   }
 
-  const auto runs_at = [&](std::size_t e, ModelPoint at, std::uint64_t seeds, int begin, int count) {
-    if (std::none_of(at.effects.begin(), at.effects.end(),
-                     [&](const EffectAt& there) { return space.effects[there.effect].acts_in(names[e]); }))
-      at.effects.clear();
-    std::vector<PlannedRun> each;
-    for (int k = begin; k < begin + count; ++k)
-      each.push_back({at, seeds + spec.seed * kSeedsOfOneTwin + static_cast<std::uint64_t>(k)});
-    Dataset::Experiment made = experiments[e];
-    if (!spec.engine.empty()) made.overrides.push_back("engine=" + spec.engine);
-    return runs_of(model, space, made, each, asset_dir);
-  };
+ private:
+  const std::vector<std::string>& outputs_of(std::size_t experiment) const {
+    return model_.experiments[experiment].observables;
+  }
 
-  Twin twin;
-  Random random(spec.seed, 0, RandomPurpose::measurement);
-  twin.truth.at.base.resize(static_cast<Eigen::Index>(space.base.size()));
-  for (double& x : twin.truth.at.base) x = kInnerBase * random.uniform(-1, 1);
-  // With and without the effect about the truth's base parameters, of the same seeds.
-  const auto strength_of = [&](const EffectAt& there) -> std::optional<double> {
-    const int pairs = std::max(spec.repeats, kLeastPairs);
+  // The base model over its parameters: its scatter, and what parameters make up for.
+  LearntModel learn_base_model(const RunThrough& design) const {
+    std::vector<PlannedRun> plain = design_of(space_, model_.simulations);
+    std::erase_if(plain, [](const PlannedRun& run) { return !run.at.effects.empty(); });
+    std::vector<std::string> names;
+    std::vector<ExperimentRuns> planned;
+    for (const Dataset::Experiment& each : experiments_) {
+      names.push_back(each.name);
+      planned.push_back(runs_of(model_, space_, each, plain, asset_dir_));
+    }
+    DesignRuns learnt;
+    const auto results = done(planned, design);
+    for (std::size_t e = 0; e < planned.size(); ++e)
+      learnt.push_back(gather(planned[e], results[e], outputs_of(e)).runs);
+    return {space_, names, learnt};
+  }
+
+  // Of one measurement, by experiment and output.
+  std::vector<Eigen::VectorXd> variances_of_errors() const {
+    std::vector<Eigen::VectorXd> all;
+    for (std::size_t e = 0; e < experiments_.size(); ++e) {
+      all.push_back(spec_.noise * spec_.noise * base_model_.surfaces()[e]->scatter().diagonal());
+      const std::vector<std::string>& outputs = outputs_of(e);
+      for (const auto& [name, error] : model_.experiments[e].errors)
+        all.back()[std::find(outputs.begin(), outputs.end(), name) - outputs.begin()] = error * error;
+    }
+    return all;
+  }
+
+  // Of all numbers that will be measured, one experiment after the other.
+  Eigen::MatrixXd covariance_of_means() const {
+    Eigen::Index n = 0, first = 0;
+    for (const Eigen::VectorXd& each : error_variances_) n += each.size();
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
+    for (std::size_t e = 0; e < experiments_.size(); ++e) {
+      Eigen::MatrixXd block = base_model_.surfaces()[e]->scatter();
+      block.diagonal() += error_variances_[e];
+      covariance.block(first, first, block.rows(), block.rows()) = block / spec_.repeats;
+      first += block.rows();
+    }
+    return covariance;
+  }
+
+  // `count` simulations of an experiment from number `begin` of a block of seeds.
+  ExperimentRuns runs_at(std::size_t experiment, ModelPoint at, std::uint64_t seeds, int begin,
+                         int count) const {
+    Dataset::Experiment made = experiments_[experiment];
+    if (std::none_of(at.effects.begin(), at.effects.end(),
+                     [&](const EffectAt& there) { return space_.effects[there.effect].acts_in(made.name); }))
+      at.effects.clear();
+    std::vector<PlannedRun> runs;
+    for (int k = begin; k < begin + count; ++k)
+      runs.push_back({at, seeds + spec_.seed * kSeedsOfOneTwin + static_cast<std::uint64_t>(k)});
+    if (!spec_.engine.empty()) made.overrides.push_back("engine=" + spec_.engine);
+    return runs_of(model_, space_, made, runs, asset_dir_);
+  }
+
+  // How strong an effect is about these base parameters, by simulations with and without it, of the same
+  // seeds; none where too few of them give a measurement.
+  std::optional<double> strength_of(const EffectAt& there, const Eigen::VectorXd& base) const {
+    const int pairs = std::max(spec_.repeats, kLeastPairs);
     std::vector<ExperimentRuns> both;
-    for (std::size_t e = 0; e < experiments.size(); ++e)
+    for (std::size_t e = 0; e < experiments_.size(); ++e)
       for (const auto& effects : {std::vector<EffectAt>{there}, std::vector<EffectAt>{}})
-        both.push_back(runs_at(e, {twin.truth.at.base, effects}, kStrengthSeeds, 0,
-                               space.effects[there.effect].acts_in(names[e]) ? pairs : 0));
-    const auto ended = done(both, hidden);
-    Eigen::VectorXd change = Eigen::VectorXd::Zero(n);
-    Eigen::MatrixXd unsure = Eigen::MatrixXd::Zero(n, n);
+        both.push_back(runs_at(e, {base, effects}, kStrengthSeeds, 0,
+                               space_.effects[there.effect].acts_in(experiments_[e].name) ? pairs : 0));
+    const auto ended = done(both, hidden_);
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(covariance_.rows());
+    Eigen::MatrixXd unsure = Eigen::MatrixXd::Zero(covariance_.rows(), covariance_.rows());
     Eigen::Index begin = 0;
-    for (std::size_t e = 0; e < experiments.size(); ++e) {
-      const std::vector<std::string>& outputs = model.experiments[e].observables;
-      const auto width = static_cast<Eigen::Index>(outputs.size());
+    for (std::size_t e = 0; e < experiments_.size(); ++e) {
+      const auto width = static_cast<Eigen::Index>(outputs_of(e).size());
       const auto &with = ended[2 * e], &without = ended[2 * e + 1];
       std::vector<Eigen::VectorXd> changes;
       for (std::size_t k = 0; k < with.size(); ++k)
-        if (const auto one = measured_in(with[k], outputs), other = measured_in(without[k], outputs);
+        if (const auto one = measured_in(with[k], outputs_of(e)),
+            other = measured_in(without[k], outputs_of(e));
             one && other)
           changes.push_back(*one - *other);
       if (!with.empty() && std::ssize(changes) < kLeastPairs / 2) return {};
@@ -189,30 +229,31 @@ Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::fil
       }
       begin += width;
     }
-    return detectability(surface, covariance, twin.truth.at.base, change, unsure);
-  };
-  std::vector<std::pair<std::size_t, double>> strengths;  // by effect
-  for (const std::string& name : spec.effects) {
-    const std::size_t e = space.find(name);
-    if (e == space.effects.size())
+    return detectability(base_model_, covariance_, base, change, unsure);
+  }
+
+  // An effect where it is as strong as asked for, and how strong it is there. Chance decides the direction;
+  // where the effect is too weak that way, it is the other.
+  std::pair<EffectAt, double> hide(const std::string& name, const Eigen::VectorXd& base) {
+    const std::size_t e = space_.find(name);
+    if (e == space_.effects.size())
       throw std::runtime_error(fmt::format("effect {} acts in none of the model's experiments", name));
-    const CandidateEffect& effect = space.effects[e];
-    EffectAt there{e, Eigen::VectorXd(static_cast<Eigen::Index>(effect.axes.size()))};
+    const CandidateEffect& effect = space_.effects[e];
     const double ends[] = {effect.lowest(), effect.highest()};
-    double sign = random.uniform() < 0.5 ? -1 : 1;
+    double sign = random_.uniform() < 0.5 ? -1 : 1;
     if (ends[0] >= 0) sign = 1;
     if (ends[1] <= 0) sign = -1;
-    for (Eigen::Index k = 1; k < there.at.size(); ++k) there.at[k] = kInnerOther * random.uniform(-1, 1);
+    EffectAt there{e, Eigen::VectorXd(static_cast<Eigen::Index>(effect.axes.size()))};
+    for (Eigen::Index k = 1; k < there.at.size(); ++k) there.at[k] = kInnerOther * random_.uniform(-1, 1);
     const auto strength = [&](double amplitude) {
       there.at[0] = amplitude;
-      return strength_of(there);
+      return strength_of(there, base);
     };
-    // The other direction if this one is too weak.
     StrengthSearch found;
     for (int way = 0; way < 2; ++way, sign = -sign)
       if (const double end = sign < 0 ? ends[0] : ends[1]; end * sign > 0) {
         const double before = found.strongest;
-        found = search_amplitude(spec.strength, end, strength);
+        found = search_amplitude(spec_.strength, end, strength);
         found.strongest = std::max(found.strongest, before);
         if (!found.too_weak && found.best) break;
       }
@@ -224,59 +265,82 @@ Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::fil
           "{} shifts these observables by {:.2g} standard uncertainties at most of the amplitudes "
           "tried up to the end of its prior range, not by {:g}; more --repeats, or less --noise, "
           "make it stronger",
-          name, found.strongest, spec.strength));
-    if (std::abs(std::log(std::max(found.best->strength / spec.strength, kLeastStrength))) > kStrengthAtMost)
+          name, found.strongest, spec_.strength));
+    if (std::abs(std::log(std::max(found.best->strength / spec_.strength, kLeastStrength))) > kStrengthAtMost)
       throw TooWeak(
           fmt::format("{}: no amplitude was found at which it shifts these observables by {:g} "
                       "standard uncertainties; the nearest gives {:.2g}",
-                      name, spec.strength, found.best->strength));
+                      name, spec_.strength, found.best->strength));
     there.at[0] = found.best->amplitude;
-    strengths.emplace_back(e, found.best->strength);
-    twin.truth.at.effects.push_back(there);
+    return {there, found.best->strength};
   }
-  std::sort(twin.truth.at.effects.begin(), twin.truth.at.effects.end(),
-            [](const auto& a, const auto& b) { return a.effect < b.effect; });
-  std::sort(strengths.begin(), strengths.end());
-  for (const auto& [e, strength] : strengths) twin.truth.detectability.push_back(strength);
 
-  // A simulation that gives no measurement (a heap without a flank) is repeated with another seed.
-  std::vector<std::vector<DesignRun>> measured(experiments.size());
-  std::vector<int> tried(experiments.size(), 0);
-  while (true) {
-    std::vector<std::size_t> which;
-    std::vector<ExperimentRuns> runs;
-    for (std::size_t e = 0; e < experiments.size(); ++e) {
-      const int lack = spec.repeats - static_cast<int>(measured[e].size());
-      if (lack == 0) continue;
-      if (tried[e] + lack > kMostTries * spec.repeats)
-        throw std::runtime_error(fmt::format("{}: {} of {} simulations of the truth gave no measurement",
-                                             names[e], tried[e] - static_cast<int>(measured[e].size()),
-                                             tried[e]));
-      runs.push_back(runs_at(e, twin.truth.at, kTwinSeeds, tried[e], lack));
-      which.push_back(e);
-      tried[e] += lack;
+  // The repeats of the truth, by experiment. One that gives no measurement (a heap without a flank) is
+  // simulated again with another seed.
+  std::vector<std::vector<DesignRun>> simulate(const ModelPoint& truth) const {
+    std::vector<std::vector<DesignRun>> measured(experiments_.size());
+    std::vector<int> tried(experiments_.size(), 0);
+    while (true) {
+      std::vector<std::size_t> which;
+      std::vector<ExperimentRuns> runs;
+      for (std::size_t e = 0; e < experiments_.size(); ++e) {
+        const int lack = spec_.repeats - static_cast<int>(measured[e].size());
+        if (lack == 0) continue;
+        if (tried[e] + lack > kMostTries * spec_.repeats)
+          throw std::runtime_error(fmt::format("{}: {} of {} simulations of the truth gave no measurement",
+                                               experiments_[e].name,
+                                               tried[e] - static_cast<int>(measured[e].size()), tried[e]));
+        runs.push_back(runs_at(e, truth, kTwinSeeds, tried[e], lack));
+        which.push_back(e);
+        tried[e] += lack;
+      }
+      if (runs.empty()) return measured;
+      const auto ended = done(runs, hidden_);
+      for (std::size_t k = 0; k < which.size(); ++k)
+        for (DesignRun& run : gather(runs[k], ended[k], outputs_of(which[k])).runs)
+          measured[which[k]].push_back(std::move(run));
     }
-    if (runs.empty()) break;
-    const auto ended = done(runs, hidden);
-    for (std::size_t k = 0; k < which.size(); ++k)
-      for (DesignRun& run : gather(runs[k], ended[k], model.experiments[which[k]].observables).runs)
-        measured[which[k]].push_back(std::move(run));
   }
-  twin.data.title = fmt::format("Measurements {}", spec.seed);
-  twin.data.source = "scree twin " + model.name;
-  for (std::size_t e = 0; e < experiments.size(); ++e) {
-    const std::vector<std::string>& outputs = model.experiments[e].observables;
-    DatasetDraft::Experiment draft{names[e], experiments[e].file, experiments[e].overrides, {}};
-    for (std::size_t c = 0; c < outputs.size(); ++c) {
-      const auto column = static_cast<Eigen::Index>(c);
-      std::vector<double> values;
-      for (const DesignRun& run : measured[e])
-        values.push_back(run.outputs[column] + std::sqrt(errors[e][column]) * normal(random));
-      draft.observables[outputs[c]] = mean_std(values);
+
+  // Adds errors of measurement.
+  DatasetDraft measure(const std::vector<std::vector<DesignRun>>& simulated) {
+    DatasetDraft data;
+    data.title = fmt::format("Measurements {}", spec_.seed);
+    data.source = "scree twin " + model_.name;
+    for (std::size_t e = 0; e < experiments_.size(); ++e) {
+      DatasetDraft::Experiment draft{
+          experiments_[e].name, experiments_[e].file, experiments_[e].overrides, {}};
+      for (std::size_t c = 0; c < outputs_of(e).size(); ++c) {
+        const auto column = static_cast<Eigen::Index>(c);
+        std::vector<double> values;
+        for (const DesignRun& run : simulated[e])
+          values.push_back(run.outputs[column] + std::sqrt(error_variances_[e][column]) * normal(random_));
+        draft.observables[outputs_of(e)[c]] = mean_std(values);
+      }
+      data.experiments.push_back(std::move(draft));
     }
-    twin.data.experiments.push_back(std::move(draft));
+    return data;
   }
-  return twin;
+
+  const DiagnosisModel& model_;
+  const TwinSpec& spec_;
+  const std::filesystem::path& asset_dir_;
+  const RunThrough& hidden_;
+  const std::vector<Dataset::Experiment> experiments_;
+  const ModelSpace space_;
+  const LearntModel base_model_;
+  std::vector<Eigen::VectorXd> error_variances_;
+  Eigen::MatrixXd covariance_;  // of the means that will be measured
+  Random random_;
+};
+
+}  // namespace
+
+Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::filesystem::path& asset_dir,
+               const RunThrough& design, const RunThrough& hidden) {
+  if (model.experiments.empty())
+    throw std::runtime_error(model.name + ": a twin needs the model's experiments and their observables");
+  return TwinMaker(model, spec, asset_dir, design, hidden).make();
 }
 
 std::string twin_answer(const DiagnosisModel& model, const TwinSpec& spec, const TwinTruth& truth) {
