@@ -10,6 +10,7 @@
 #include <map>
 #include <numeric>
 
+#include "analysis/diagnose/blocks.h"
 #include "analysis/diagnose/in_parallel.h"
 
 namespace scree {
@@ -292,29 +293,21 @@ LearntModel::LearntModel(const ModelSpace& space, const std::vector<std::string>
 }
 
 SurfacePrediction LearntModel::at(const ModelPoint& point) const {
-  Eigen::Index n = 0, first = 0;
-  for (const ResponseSurface& surface : surfaces_) n += surface.outputs();
-  SurfacePrediction all{Eigen::VectorXd(n), Eigen::MatrixXd::Zero(n, n)};
+  std::vector<double> means;
+  std::vector<Eigen::MatrixXd> covariances;
   for (std::size_t e = 0; e < surfaces_.size(); ++e) {
     const SurfacePrediction here = surfaces_[e].at(point);
-    const Eigen::Index width = surfaces_[e].outputs();
-    all.mean.segment(first, width) = here.mean;
-    all.covariance.block(first, first, width, width) = widening_[e].covariance * here.covariance;
-    first += width;
+    means.insert(means.end(), here.mean.begin(), here.mean.end());
+    covariances.push_back(widening_[e].covariance * here.covariance);
   }
-  return all;
+  return {Eigen::Map<Eigen::VectorXd>(means.data(), std::ssize(means)), block_diagonal(covariances)};
 }
 
 Eigen::MatrixXd LearntModel::scatter() const {
-  Eigen::Index n = 0, first = 0;
-  for (const ResponseSurface& surface : surfaces_) n += surface.outputs();
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
-  for (std::size_t e = 0; e < surfaces_.size(); ++e) {
-    const Eigen::Index width = surfaces_[e].outputs();
-    all.block(first, first, width, width) = widening_[e].scatter * surfaces_[e].scatter();
-    first += width;
-  }
-  return all;
+  std::vector<Eigen::MatrixXd> scatters;
+  for (std::size_t e = 0; e < surfaces_.size(); ++e)
+    scatters.push_back(widening_[e].scatter * surfaces_[e].scatter());
+  return block_diagonal(scatters);
 }
 
 std::vector<const ResponseSurface*> LearntModel::surfaces() const {

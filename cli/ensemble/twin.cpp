@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 
+#include "analysis/diagnose/blocks.h"
 #include "sim/material/random.h"
 
 namespace scree {
@@ -172,16 +173,13 @@ class TwinMaker {
 
   // Of all numbers that will be measured, one experiment after the other.
   Eigen::MatrixXd covariance_of_means() const {
-    Eigen::Index n = 0, first = 0;
-    for (const Eigen::VectorXd& each : error_variances_) n += each.size();
-    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
+    std::vector<Eigen::MatrixXd> covariances;
     for (std::size_t e = 0; e < experiments_.size(); ++e) {
-      Eigen::MatrixXd block = base_model_.surfaces()[e]->scatter();
-      block.diagonal() += error_variances_[e];
-      covariance.block(first, first, block.rows(), block.rows()) = block / spec_.repeats;
-      first += block.rows();
+      Eigen::MatrixXd one = base_model_.surfaces()[e]->scatter();
+      one.diagonal() += error_variances_[e];
+      covariances.push_back(one / spec_.repeats);
     }
-    return covariance;
+    return block_diagonal(covariances);
   }
 
   // `count` simulations of an experiment from number `begin` of a block of seeds.
