@@ -11,6 +11,7 @@
 #include "analysis/results/outputs.h"
 #include "cli/commands.h"
 #include "cli/ensemble/dataset_write.h"
+#include "cli/option_values.h"
 #include "cli/output_folder.h"
 #include "cli/snapshot_outputs.h"
 #include "cli/written_dataset.h"
@@ -28,6 +29,7 @@ std::optional<scree::Scenario> scenario_of(const AnalyseOptions& options) {
     return std::nullopt;
   }
   if (!options.scenario.empty()) {
+    if (!is_of_kind(options.scenario, scree::FileKind::scenario)) return std::nullopt;
     scree::ScenarioResult loaded = scree::load_scenario(options.scenario, options.overrides, asset_dir());
     for (const std::string& warning : loaded.warnings) fmt::print(stderr, "warning: {}\n", warning);
     for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
@@ -129,6 +131,10 @@ int write_dataset_of(const AnalyseOptions& options, const scree::Scenario& scena
 }  // namespace
 
 int run_analyse(const AnalyseOptions& options) {
+  if (const std::string twice = given_twice(options.files); !twice.empty()) {
+    fmt::print(stderr, "{}\n", twice);
+    return kBadInput;
+  }
   const auto scenario = scenario_of(options);
   if (!scenario) return kBadInput;
   const auto reading = reading_of(options, *scenario);

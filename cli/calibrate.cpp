@@ -15,6 +15,7 @@
 #include "cli/ensemble/run_request.h"
 #include "cli/ensemble/scenario_patch.h"
 #include "cli/ensemble_console.h"
+#include "cli/option_values.h"
 #include "cli/output_folder.h"
 #include "scree_version.h"
 #include "sim/io/text_file.h"
@@ -27,42 +28,6 @@ namespace {
 constexpr double kUndetermined =
     0.8;                       // share of a range that an interval of 90 % takes when nothing is known
 constexpr double kMissed = 2;  // standard deviations beyond which a target is not met
-
-std::vector<std::string> names_of(const scree::CalibrationSpec& spec) {
-  std::vector<std::string> names;
-  for (const auto& span : spec.parameters) names.push_back(span.key);
-  return names;
-}
-
-std::vector<double> values_at(const scree::CalibrationSpec& spec, const Eigen::VectorXd& at) {
-  std::vector<double> values;
-  for (int k = 0; k < at.size(); ++k) values.push_back(scree::parameter_value(spec, k, at[k]));
-  return values;
-}
-
-scree::ScenarioResult scenario_at(const scree::CalibrationSpec& spec, const fs::path& scenario,
-                                  const std::vector<double>& values) {
-  std::vector<std::string> texts;
-  for (const double value : values) texts.push_back(fmt::format("{:.6g}", value));
-  return scree::load_scenario(scenario, scree::overrides_of(spec.variation, names_of(spec), texts),
-                              asset_dir());
-}
-
-// What would be refused only after simulations have cost time: ends of the ranges, and outputs that the
-// scenario does not give. An empty text if all is well.
-std::string refusal(const scree::CalibrationSpec& spec) {
-  for (const auto& target : spec.targets) {
-    for (const double share : {0.0, 1.0}) {
-      const Eigen::VectorXd end =
-          Eigen::VectorXd::Constant(static_cast<Eigen::Index>(spec.parameters.size()), share);
-      const scree::ScenarioResult loaded = scenario_at(spec, target.scenario, values_at(spec, end));
-      if (!loaded.errors.empty()) return loaded.errors.front().text();
-      if (const std::string why = scree::why_not_given(loaded.scenario, target.output); !why.empty())
-        return fmt::format("output '{}': {}", target.output, why);
-    }
-  }
-  return {};
-}
 
 // Scenarios with their seeds through the store; what is found of each.
 std::vector<std::optional<scree::StoredResult>> simulate(
@@ -112,7 +77,9 @@ scree::Simulator simulator(const scree::CalibrationSpec& spec, scree::ResultsSto
   return [&](const std::vector<scree::CalibrationRun>& runs) {
     std::vector<std::pair<scree::ScenarioResult, std::uint64_t>> scenarios;
     for (const scree::CalibrationRun& run : runs)
-      scenarios.emplace_back(scenario_at(spec, run.scenario, values_at(spec, run.at)), run.seed);
+      scenarios.emplace_back(
+          scree::calibrated_scenario(spec, run.scenario, scree::values_at(spec, run.at), asset_dir()),
+          run.seed);
     const auto found = simulate(scenarios, store, options);
     std::vector<std::vector<double>> values;
     for (std::size_t k = 0; k < runs.size(); ++k) {
@@ -123,8 +90,8 @@ scree::Simulator simulator(const scree::CalibrationSpec& spec, scree::ResultsSto
         values.back().push_back(given ? found[k]->outputs.at(target.output) : NAN);
       }
       if (!is_good(found[k]))
-        fmt::print(stderr, "a run with {} is left out: {}\n", fmt::join(values_at(spec, runs[k].at), ", "),
-                   why_left_out(found[k]));
+        fmt::print(stderr, "a run with {} is left out: {}\n",
+                   fmt::join(scree::values_at(spec, runs[k].at), ", "), why_left_out(found[k]));
     }
     return values;
   };
@@ -140,7 +107,8 @@ std::string material_file(const scree::CalibrationSpec& spec, const scree::Calib
                         answer.at_value[t].mean, spec.targets[t].value, spec.targets[t].uncertainty,
                         std::abs(answer.missed_by[t]) > kMissed ? " (NOT MET)" : "");
   text += "# A scenario takes these values over with `extends:` and the path of this file.\n";
-  const scree::ScenarioResult best = scenario_at(spec, spec.targets[0].scenario, answer.value);
+  const scree::ScenarioResult best =
+      scree::calibrated_scenario(spec, spec.targets[0].scenario, answer.value, asset_dir());
   const std::string& resolved = best.scenario.resolved_yaml;
   const auto begin = resolved.find("material:\n");
   auto end = begin;
@@ -188,7 +156,7 @@ void draw_picture(const scree::CalibrationSpec& spec, const scree::CalibrationRe
 
 void write_tables(const scree::CalibrationSpec& spec, const scree::CalibrationResult& result,
                   const scree::CalibrationAnswer& answer, const fs::path& out) {
-  const std::vector<std::string> names = names_of(spec);
+  const std::vector<std::string> names = scree::names_of(spec);
   std::string runs = fmt::format("{},seed", fmt::join(names, ","));
   for (const auto& target : spec.targets) {
     const bool alone = std::count_if(spec.targets.begin(), spec.targets.end(),
@@ -197,7 +165,8 @@ void write_tables(const scree::CalibrationSpec& spec, const scree::CalibrationRe
   }
   runs += "\n";
   for (std::size_t k = 0; k < result.runs.size(); ++k) {
-    runs += fmt::format("{:.6g},{}", fmt::join(values_at(spec, result.runs[k].at), ","), result.runs[k].seed);
+    runs += fmt::format("{:.6g},{}", fmt::join(scree::values_at(spec, result.runs[k].at), ","),
+                        result.runs[k].seed);
     for (const double value : result.values[k])
       runs += std::isfinite(value) ? fmt::format(",{:.6g}", value) : ",";
     runs += "\n";
@@ -206,9 +175,9 @@ void write_tables(const scree::CalibrationSpec& spec, const scree::CalibrationRe
   std::string posterior = fmt::format("{},probability\n", fmt::join(names, ","));
   for (std::size_t node = 0; node < result.posterior->size(); ++node)
     if (result.posterior->density(node) > 1e-6)
-      posterior +=
-          fmt::format("{:.6g},{:.6g}\n", fmt::join(values_at(spec, result.posterior->point(node)), ","),
-                      result.posterior->density(node));
+      posterior += fmt::format("{:.6g},{:.6g}\n",
+                               fmt::join(scree::values_at(spec, result.posterior->point(node)), ","),
+                               result.posterior->density(node));
   scree::write_text_file(out / "posterior.csv", posterior);
   if (answer.line.empty()) return;
   std::string line = fmt::format("{}\n", fmt::join(names, ","));
@@ -299,7 +268,7 @@ int run_equivalence(const CalibrateOptions& options) {
     return kBadInput;
   }
   if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
-  const std::unique_ptr<scree::ResultsStore> store = open_store(options.ensemble.store, false);
+  const std::unique_ptr<scree::ResultsStore> store = open_store(options.ensemble.store, StoreUse::change);
   if (!store) return kBadInput;
   std::vector<scree::EquivalenceNode> nodes;
   const int ended = simulations([&] {
@@ -350,17 +319,18 @@ int run_equivalence(const CalibrateOptions& options) {
 }  // namespace
 
 int run_calibrate(const CalibrateOptions& options) {
+  if (!is_of_kind(options.file, scree::FileKind::calibration)) return kBadInput;
   if (scree::is_equivalence(options.file)) return run_equivalence(options);
   const scree::CalibrationSpecResult loaded = scree::load_calibration(options.file);
   for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
   if (!loaded.errors.empty()) return kBadInput;
   const scree::CalibrationSpec& spec = loaded.spec;
-  if (const std::string why = refusal(spec); !why.empty()) {
+  if (const std::string why = scree::why_not_run(spec, asset_dir()); !why.empty()) {
     fmt::print(stderr, "{}: {}\n", options.file.string(), why);
     return kBadInput;
   }
   if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
-  const std::unique_ptr<scree::ResultsStore> store = open_store(options.ensemble.store, false);
+  const std::unique_ptr<scree::ResultsStore> store = open_store(options.ensemble.store, StoreUse::change);
   if (!store) return kBadInput;
 
   scree::CalibrationResult result;

@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/field.h"
+#include "cli/option_values.h"
 #include "cli/picture_options.h"
 
 namespace {
@@ -27,7 +28,7 @@ void add_ensemble_options(CLI::App* app, EnsembleOptions& ensemble) {
   app->add_option("--checkpoint-minutes", ensemble.checkpoint_minutes,
                   "Wall time between checkpoints of a run, from which it goes on when the command is "
                   "interrupted or killed and started again; 0: none; default: 5")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(within(0, 1e6));
 }
 
 Command run_command(CLI::App& all) {
@@ -44,14 +45,15 @@ Command run_command(CLI::App& all) {
   app->add_option("--out", run.out,
                   "Folder for the results; default: runs/NAME, or runs/NAME-2 ... when it exists");
   app->add_option("--set", run.overrides, "Change a value: --set material.mu=0.5 (may be repeated)")
-      ->take_all();
+      ->take_all()
+      ->allow_extra_args(false);
   add_force_flag(app, run.force);
   app->add_flag("--summary-only", run.summary_only,
                 "Write summary.json and sections.csv, no report and no pictures");
   app->add_option("--checkpoint-minutes", run.checkpoint_minutes,
                   "Wall time between checkpoints, from which a run that was killed can be resumed; 0: none; "
                   "default: 5")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(within(0, 1e6));
   app->add_flag("--keep-pile", run.keep_pile,
                 "Leave the finished pile of every seed in its folder, for --pile");
   CLI::Option* const pile = app->add_option(
@@ -112,7 +114,7 @@ Command calibrate_command(CLI::App& all) {
       all.add_subcommand("calibrate", "Find the parameters that make a scenario give what was measured");
   app->add_option("file", calibrate.file, "Calibration file (YAML)")->required();
   add_ensemble_options(app, calibrate.ensemble);
-  app->add_option("--out", calibrate.out, "Folder for the result; default: runs/NAME");
+  app->add_option("--out", calibrate.out, "Folder for the result; default: a free runs/NAME");
   add_force_flag(app, calibrate.force);
   app->footer(
       "\nExamples:\n  scree calibrate scenarios/calibrations/lab_angle.yaml\n"
@@ -180,7 +182,12 @@ Command compare_command(CLI::App& all) {
   const auto cases = std::make_shared<std::vector<std::string>>();
   CLI::App* app = all.add_subcommand("compare", "Show a finished run beside the reference values");
   app->add_option("dir", *dir, "Run folder")->required();
-  app->add_option("--case", *cases, "Reference cases; default: those of the scenario")->take_all();
+  app->add_option("--case", *cases, "Reference cases; default: those of the scenario")
+      ->take_all()
+      ->allow_extra_args(false);
+  app->footer(
+      "\nExamples:\n  scree compare runs/canadian_malartic_10m\n"
+      "  scree compare runs/a1_mu05 --case A1\n");
   return {app, [dir, cases] { return run_compare(*dir, *cases); }};
 }
 
@@ -188,9 +195,14 @@ Command validate_command(CLI::App& all) {
   const auto file = std::make_shared<std::filesystem::path>();
   const auto overrides = std::make_shared<std::vector<std::string>>();
   CLI::App* app =
-      all.add_subcommand("validate", "Check a scenario or a dataset and say everything that is wrong");
-  app->add_option("file", *file, "Scenario or dataset file (YAML)")->required();
-  app->add_option("--set", *overrides, "Change a value before checking")->take_all();
+      all.add_subcommand("validate", "Check a scenario, a dataset, or any other file that a command takes");
+  app->add_option("file", *file, "Scenario, dataset, sweep, calibration, study or model file (YAML)")
+      ->required();
+  app->add_option("--set", *overrides, "Change a value before checking")->take_all()->allow_extra_args(false);
+  app->footer(
+      "\nExamples:\n  scree validate scenarios/a1_10m.yaml\n"
+      "  scree validate scenarios/a1_10m.yaml --set material.mu=0.5\n"
+      "  scree validate assets/datasets/laboratory/dataset.yaml\n");
   return {app, [file, overrides] { return run_validate(*file, *overrides); }};
 }
 
@@ -224,7 +236,7 @@ Command analyse_command(CLI::App& all) {
       ->allow_extra_args(false);
   app->add_option("--relative-uncertainty", analyse.relative_uncertainty,
                   "Standard uncertainty of a value with one repeat, as a share of it")
-      ->check(CLI::Range(1e-6, 1e3));
+      ->check(within(1e-6, 1e3));
   app->footer(
       "\nExamples:\n  scree analyse heap1.csv heap2.csv heap3.csv --scenario scenarios/repose_lab.yaml --out "
       "measured\n"
@@ -272,7 +284,7 @@ Command twin_command(CLI::App& all) {
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();
   app->add_option("--noise", twin.noise, "Error of a measurement, in standard deviations between seeds")
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(within(0, 100))
       ->capture_default_str();
   app->add_option("--seed", twin.seed, "Draws all that is random; default: another every time")
       ->check(CLI::Range(0, 1'000'000'000));
@@ -302,6 +314,7 @@ Command field_command(CLI::App& all) {
   app->add_option("--sieved", field.sieved, "Grading of a sieved sample, for what pictures do not see");
   app->add_option("--limit", field.limit, "Diameter below which the sieved sample counts: 0.1m, 25.4cm");
   app->add_option("--void-ratio", field.void_ratio, "Of all conductivities; drops out of their ratios")
+      ->check(within(1e-3, 100))
       ->capture_default_str();
   app->add_option("--printed", field.printed, "Table of printed values to hold ours against");
   app->add_option("--scenario", field.scenario, "Scenario that simulates the slope: writes a dataset");
@@ -352,15 +365,15 @@ Command image_command(CLI::App& all) {
       ->capture_default_str();
   auto* shape_factor = app->add_option("--shape-factor", image.shape_factor,
                                        "lambda = c/b of ellipsoid and feret; default: 0.53")
-                           ->check(CLI::Range(0.05, 1.0));
+                           ->check(within(0.05, 1));
   app->add_option("--weighed", image.weighed,
                   "Find lambda first, from photographs of weighed rock: CSV photo,mass_kg")
       ->excludes(shape_factor);
   app->add_option("--detection-limit", image.detection_limit_cm2, "Smallest outline that is counted, cm2")
-      ->check(CLI::Range(1e-3, 1e6))
+      ->check(within(1e-3, 1e6))
       ->capture_default_str();
   app->add_option("--density", image.density, "Of the rock, kg/m3")
-      ->check(CLI::Range(500.0, 10000.0))
+      ->check(within(500, 10000))
       ->capture_default_str();
   app->add_option("--threshold", image.threshold, "otsu, or local where the light is uneven")
       ->check(CLI::IsMember({"otsu", "local"}))
@@ -368,7 +381,7 @@ Command image_command(CLI::App& all) {
   app->add_option("--neck", image.neck,
                   "Two parts are one grain if the neck between them is at least this share of the width of "
                   "the smaller")
-      ->check(CLI::Range(0.05, 1.0))
+      ->check(within(0.05, 1))
       ->capture_default_str();
   app->add_flag("--no-edges", image.no_edges, "Steps of brightness within rock do not separate grains");
   app->add_option("--truth", image.truth,
@@ -377,7 +390,7 @@ Command image_command(CLI::App& all) {
                   "Scenario that simulates the slope: writes a dataset, and the bias on top of it");
   app->add_option("--relative-uncertainty", image.relative_uncertainty,
                   "Standard uncertainty in the dataset of values from one photograph, as a share of them")
-      ->check(CLI::PositiveNumber);
+      ->check(within(1e-6, 1e3));
   app->add_option("--out", image.out, "Folder for the results; default: a free runs/image");
   add_force_flag(app, image.force);
   app->footer(
@@ -404,34 +417,36 @@ Command render_command(CLI::App& all) {
                       "Instead: a pile dumped towards +x, of a run (particles.h5) or any snapshot");
   app->add_option("--slope", render.slope,
                   "Angle of the pile's slope, degrees, at right angles to which it is seen; default: its own")
-      ->check(CLI::Range(0.0, 90.0))
+      ->check(within(0, 90))
       ->needs(snapshot);
   app->add_option("--pixels", render.pixels, "Size of the picture; that of a pile follows from the scale")
       ->capture_default_str();
   app->add_option("--scale", render.scale, "Length of a pixel")->capture_default_str();
   app->add_option("--coverage", render.coverage,
                   "Area of all outlines over the picture's; default: 0.35, 0.5, 1.5")
-      ->check(CLI::Range(0.01, 5.0));
+      ->check(within(0.01, 5));
   app->add_option("--segregation", render.segregation, "How much coarser the foot is than the top, -1 to 1")
-      ->check(CLI::Range(-1.0, 1.0))
+      ->check(within(-1, 1))
       ->capture_default_str();
   app->add_option("--sun", render.sun, "Azimuth (0 right, 90 top) and elevation, degrees")
       ->capture_default_str();
   app->add_option("--ambient", render.ambient, "Share of the light that shadows get")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(within(0, 1))
       ->capture_default_str();
   app->add_option("--texture", render.texture, "Deviation of brightness within a grain")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(within(0, 1))
       ->capture_default_str();
   app->add_option("--blur", render.blur, "Standard deviation of the lens's blur, px")
-      ->check(CLI::Range(0.0, 20.0))
+      ->check(within(0, 20))
       ->capture_default_str();
   app->add_option("--noise", render.noise, "Standard deviation of the sensor's noise, share of white")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(within(0, 1))
       ->capture_default_str();
   app->add_option("--target-diameter", render.target_diameter, "Of the magenta disc, or none")
       ->capture_default_str();
-  app->add_option("--seed", render.seed, "Of places, texture and noise")->capture_default_str();
+  app->add_option("--seed", render.seed, "Of places, texture and noise")
+      ->check(CLI::Range(0, 1'000'000'000))
+      ->capture_default_str();
   app->add_flag("--force", render.force, "Write over files that are there");
   app->footer(
       "\nExamples:\n  scree render slope.png --layout touching --sun 135,40\n"
@@ -441,6 +456,7 @@ Command render_command(CLI::App& all) {
 
 Command schema_command(CLI::App& all) {
   CLI::App* app = all.add_subcommand("schema", "Print the JSON Schema of scenario files");
+  app->footer("\nExample:\n  scree schema > scenario.schema.json\n");
   return {app, run_schema};
 }
 

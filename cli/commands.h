@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/exit_code.h"
+#include "cli/ensemble/exit_code.h"
 
 /// Wall time between checkpoints of a run, where nothing else is said.
 inline constexpr double kCheckpointMinutes = 5;

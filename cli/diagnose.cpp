@@ -9,6 +9,7 @@
 #include "cli/ensemble/diagnosis_session.h"
 #include "cli/ensemble/scenario_patch.h"
 #include "cli/ensemble_console.h"
+#include "cli/option_values.h"
 #include "cli/output_folder.h"
 #include "cli/progress.h"
 #include "cli/run_through.h"
@@ -89,17 +90,17 @@ void write_patches(const scree::DiagnosisSession& session, const scree::Diagnosi
 }  // namespace
 
 int run_diagnose(const DiagnoseOptions& options) {
+  if (!is_of_kind(options.model, scree::FileKind::model)) return kBadInput;
   const scree::DiagnosisModelResult loaded = scree::load_model(options.model, asset_dir());
   for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
   if (!loaded.errors.empty()) return kBadInput;
   std::vector<scree::Dataset> datasets;
+  if (const std::string twice = given_twice(options.datasets); !twice.empty()) {
+    fmt::print(stderr, "{}\n", twice);
+    return kBadInput;
+  }
   for (const fs::path& file : options.datasets) {
-    std::error_code none;
-    const auto is_same = [&](const fs::path& other) { return fs::equivalent(file, other, none); };
-    if (std::count_if(options.datasets.begin(), options.datasets.end(), is_same) > 1) {
-      fmt::print(stderr, "{}: is given twice; every measurement would count twice\n", file.string());
-      return kBadInput;
-    }
+    if (!is_of_kind(file, scree::FileKind::dataset)) return kBadInput;
     scree::DatasetResult dataset = scree::load_dataset(file, asset_dir());
     for (const scree::ScenarioError& error : dataset.errors) fmt::print(stderr, "{}\n", error.text());
     if (!dataset.errors.empty()) return kBadInput;
@@ -113,19 +114,19 @@ int run_diagnose(const DiagnoseOptions& options) {
   }
   for (const std::string& name : options.without)
     if (scree::find_effect(name) == nullptr) {
-      fmt::print(stderr, "--without {}: no such effect{}\n", name,
-                 scree::suggestion(name, loaded.model.effects));
+      fmt::print(stderr, "--without {}: no such effect{}; the model looks for {}\n", name,
+                 scree::suggestion(name, loaded.model.effects), scree::join(loaded.model.effects));
       return kBadInput;
     }
   scree::DiagnosisSession session(loaded.model, scree::join_datasets(datasets), options.without, asset_dir(),
                                   options.ensemble.cores());
-  const auto store = open_store(options.ensemble.store, false);
+  if (!options.plan && !options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
+  const auto store = open_store(options.ensemble.store, options.plan ? StoreUse::list : StoreUse::change);
   if (!store) return kBadInput;
   if (options.plan) {
     print_plan(session, *store);
     return kOk;
   }
-  if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
   scree::DiagnosisOutcome outcome;
   try {
     outcome = session.run(run_through(*store, options.ensemble));

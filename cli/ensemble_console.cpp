@@ -20,8 +20,13 @@ int EnsembleOptions::cores() const {
   return jobs > 0 ? jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
-std::unique_ptr<scree::ResultsStore> open_store(const fs::path& named, bool only_look) {
-  const fs::path file = named.empty() ? fs::path("runs") / "store.sqlite" : named;
+std::unique_ptr<scree::ResultsStore> open_store(const fs::path& named, StoreUse use) {
+  fs::path file = named.empty() ? fs::path("runs") / "store.sqlite" : named;
+  if (use == StoreUse::list && !fs::exists(file)) {
+    fmt::print(stderr, "note: {} is not there: nothing has been run yet\n", file.string());
+    return std::make_unique<scree::ResultsStore>(":memory:");
+  }
+  const bool only_look = use != StoreUse::change;
   if (only_look && !fs::exists(file)) {
     fmt::print(stderr, "{}: no such store; nothing has been run yet, or another --store is meant\n",
                file.string());

@@ -9,9 +9,12 @@
 #include "cli/commands.h"
 #include "cli/ensemble/ensemble.h"
 
-/// The store named, or runs/store.sqlite; none, with a message, if it cannot be opened. `only_look`: it is
-/// not made, and needs no right to write.
-std::unique_ptr<scree::ResultsStore> open_store(const std::filesystem::path& named, bool only_look);
+/// What a store is opened for. To look at it needs no right to write and makes none; where there is none, a
+/// list is that of an empty one.
+enum class StoreUse { change, look, list };
+
+/// The store named, or runs/store.sqlite; none, with a message, if it cannot be opened.
+std::unique_ptr<scree::ResultsStore> open_store(const std::filesystem::path& named, StoreUse use);
 
 /// Brings the runs into the store, with progress on stderr. Ctrl-C ends it.
 scree::EnsembleProgress run_with_progress(const std::vector<scree::RunRequest>& runs,

@@ -3,34 +3,21 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <optional>
-#include <regex>
 
 #include "analysis/field/field_analysis.h"
 #include "analysis/field/field_report.h"
 #include "analysis/field/printed_values.h"
-#include "analysis/results/output_units.h"
 #include "cli/commands.h"
 #include "cli/ensemble/field_dataset.h"
+#include "cli/option_values.h"
 #include "cli/output_folder.h"
 #include "cli/written_dataset.h"
-#include "sim/io/input_text.h"
 #include "sim/scene/scenario.h"
 
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A length with its unit, as "0.1m", "254 mm" or, in metres, "0.1"; NaN if it is none.
-double length_in(const std::string& text) {
-  static const std::regex form("\\s*([0-9.eE+-]+)\\s*([a-z]*)\\s*");
-  std::smatch parts;
-  if (!std::regex_match(text, parts, form)) return NAN;
-  const auto number = scree::number_in(parts[1].str());
-  const auto factor = scree::unit_factor(parts[2], "m");
-  return number && factor && *number > 0 ? *number * *factor : NAN;
-}
 
 /// The options with the files that the thesis's chapter was made from.
 FieldCliOptions with_thesis(FieldCliOptions options) {
@@ -62,16 +49,14 @@ std::optional<Inputs> read_inputs(const FieldCliOptions& options) {
   if (options.sieved.empty() != options.limit.empty())
     return refuse(
         "--sieved and --limit belong together: a grading file, and the diameter below which it counts");
-  if (!(options.void_ratio > 0 && options.void_ratio < 100))
-    return refuse(fmt::format("--void-ratio {}: must be above 0", options.void_ratio));
   if (!options.observables.empty() && options.scenario.empty())
     return refuse("--observables: a dataset names the scenario that simulates it: --scenario FILE");
   Inputs inputs;
   inputs.options.void_ratio = options.void_ratio;
   if (!options.limit.empty()) {
-    inputs.options.limit = length_in(options.limit);
-    if (!std::isfinite(inputs.options.limit))
-      return refuse(fmt::format("--limit {}: is no length above 0, like 0.1m or 25.4cm", options.limit));
+    const auto limit = length_in("--limit", options.limit);
+    if (!limit) return std::nullopt;
+    inputs.options.limit = *limit;
   }
   try {
     inputs.gradings = scree::read_slope_gradings(options.gradings);
@@ -87,6 +72,7 @@ std::optional<Inputs> read_inputs(const FieldCliOptions& options) {
 // The dataset of the sections; none, with a message, if its scenario cannot be had.
 std::optional<WrittenDataset> dataset_of(const FieldCliOptions& options, const scree::FieldAnalysis& field,
                                          int sections) {
+  if (!is_of_kind(options.scenario, scree::FileKind::scenario)) return std::nullopt;
   scree::ScenarioResult loaded = scree::load_scenario(options.scenario, {}, asset_dir());
   for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
   if (!loaded.errors.empty()) return std::nullopt;

@@ -15,6 +15,7 @@
 #include "cli/commands.h"
 #include "cli/ensemble/dataset_write.h"
 #include "cli/ensemble/scenario_patch.h"
+#include "cli/option_values.h"
 #include "cli/output_folder.h"
 #include "cli/picture_options.h"
 #include "cli/written_dataset.h"
@@ -179,12 +180,17 @@ WrittenDataset dataset_of(const ImageOptions& options, const scree::Scenario& sc
 
 // What can be said before any picture is looked at.
 bool may_begin(const ImageOptions& options, std::optional<scree::Scenario>& scenario) {
+  if (const std::string twice = given_twice(options.photos); !twice.empty()) {
+    fmt::print(stderr, "{}\n", twice);
+    return false;
+  }
   if (!options.truth.empty() && options.truth.size() != options.photos.size()) {
     fmt::print(stderr, "--truth: {} files for {} photographs; one each is needed, in their order\n",
                options.truth.size(), options.photos.size());
     return false;
   }
   if (!options.scenario.empty()) {
+    if (!is_of_kind(options.scenario, scree::FileKind::scenario)) return false;
     scree::ScenarioResult loaded = scree::load_scenario(options.scenario, {}, asset_dir());
     for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
     if (!loaded.errors.empty()) return false;

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <new>
 
 #include "cli/command_line.h"
@@ -78,11 +79,19 @@ int main(int argc, char** argv) {
     return kBadInput;
   }
 
+  signal(SIGCHLD, SIG_DFL);  // where it is ignored nobody learns how a run ended
   signal(SIGXFSZ, SIG_IGN);  // a file at its limit is then an error of the write, with a message
   struct sigaction action = {};
   action.sa_handler = on_interrupt;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  if (!std::filesystem::is_directory(asset_dir() / "gradings")) {
+    fmt::print(stderr,
+               "scree: {}: has no gradings, meshes and reference values; set SCREE_ASSETS to the folder "
+               "`assets` of the project\n",
+               asset_dir().string());
+    return kBadInput;
+  }
   try {
     for (const Command& command : commands)
       if (*command.app) return command.run();

@@ -12,9 +12,26 @@ fs::path free_run_folder(const std::string& name) {
 }
 
 bool may_fill(const fs::path& folder, bool force) {
-  if (force || !fs::exists(folder) || (fs::is_directory(folder) && fs::is_empty(folder))) return true;
-  fmt::print(stderr, "{}: is there already; choose another --out, or --force to write into it\n",
-             folder.string());
+  if (!force && fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder))) {
+    fmt::print(stderr, "{}: is there already; choose another --out, or --force to write into it\n",
+               folder.string());
+    return false;
+  }
+  std::error_code none;
+  fs::path there = fs::absolute(folder).lexically_normal();
+  while (!fs::exists(there, none) && there.has_relative_path()) there = there.parent_path();
+  if (fs::is_directory(there, none) && access(there.c_str(), W_OK | X_OK) == 0) return true;
+  fmt::print(stderr, "{}: cannot be written: {} {}; choose another --out\n", folder.string(), there.string(),
+             fs::is_directory(there, none) ? "gives no permission" : "is no folder");
+  return false;
+}
+
+bool may_write(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  std::error_code none;
+  if (fs::is_directory(folder, none) && !fs::is_directory(file, none)) return true;
+  fmt::print(stderr, "{}: cannot be written: {}\n", file.string(),
+             fs::is_directory(file, none) ? "it is a folder" : "its folder is not there");
   return false;
 }
 

@@ -6,8 +6,12 @@
 /// runs/NAME, or the first of runs/NAME-2, ... that is not there.
 std::filesystem::path free_run_folder(const std::string& name);
 
-/// Whether the folder is not there or empty, or may be written into all the same; a message if not.
+/// Whether the folder is not there or empty, or may be written into all the same, and could be made; a
+/// message if not. What is refused here is not refused after hours of work.
 bool may_fill(const std::filesystem::path& folder, bool force);
+
+/// Whether the folder of a file is there, and the file is none; a message if not.
+bool may_write(const std::filesystem::path& file);
 
 /// Makes the folder. False, with a message, if it holds something (unless forced) or cannot be written.
 bool prepare_folder(const std::filesystem::path& folder, bool force);

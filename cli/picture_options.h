@@ -48,12 +48,5 @@ struct RenderOptions {
 int run_image(const ImageOptions& options);
 int run_render(const RenderOptions& options);
 
-/// Metres of "0.5m", "50cm"; none, with a message that begins with the option's name, if it is no length.
-std::optional<double> length_in(const std::string& option, const std::string& text);
-/// Metres a pixel of "1.2cm/px".
-std::optional<double> scale_in(const std::string& option, const std::string& text);
-/// Two numbers, "135,45" or "1600x1200".
-std::optional<std::pair<double, double>> pair_in(const std::string& option, const std::string& text,
-                                                 char separator);
 /// Corners of "x,y x,y x,y ...": two are opposite corners of a rectangle.
 std::optional<std::vector<cv::Point>> polygon_in(const std::string& option, const std::string& text);

@@ -10,6 +10,7 @@
 #include "cli/ensemble/output_scope.h"
 #include "cli/ensemble/sweep_results.h"
 #include "cli/ensemble_console.h"
+#include "cli/option_values.h"
 
 namespace {
 
@@ -26,6 +27,7 @@ int refuse(const std::string& message) {
 }  // namespace
 
 int run_predict(const PredictOptions& options) {
+  if (!is_of_kind(options.file, scree::FileKind::sweep)) return kBadInput;
   const scree::SweepResult loaded = scree::load_sweep(options.file, asset_dir());
   for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
   if (!loaded.errors.empty()) return kBadInput;
@@ -43,7 +45,7 @@ int run_predict(const PredictOptions& options) {
   std::vector<double> values;
   std::vector<scree::PointResults> points;
   if (options.from.empty()) {
-    const auto store = open_store(options.store, true);
+    const auto store = open_store(options.store, StoreUse::look);
     if (!store) return kBadInput;
     points = scree::look_up(sweep, scree::requests_of(sweep, asset_dir()), *store);
   } else {

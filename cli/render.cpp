@@ -8,6 +8,7 @@
 #include "analysis/image/render_photo.h"
 #include "analysis/pile/slope_profile.h"
 #include "cli/commands.h"
+#include "cli/option_values.h"
 #include "cli/picture_options.h"
 #include "sim/io/input_text.h"
 #include "sim/io/snapshot_reader.h"

@@ -14,6 +14,7 @@
 #include "analysis/report/report.h"
 #include "analysis/results/summary.h"
 #include "cli/commands.h"
+#include "cli/option_values.h"
 #include "cli/output_folder.h"
 #include "cli/progress.h"
 #include "cli/results_of.h"
@@ -84,6 +85,7 @@ void check_piles(const Plan& plan) {
 }
 
 std::optional<Plan> plan_new(const RunOptions& options) {
+  if (!is_of_kind(options.file, scree::FileKind::scenario)) return std::nullopt;
   scree::ScenarioResult loaded = scree::load_scenario(options.file, options.overrides, asset_dir());
   if (!check(loaded)) return std::nullopt;
   Plan plan;

@@ -13,6 +13,7 @@
 namespace scree {
 namespace {
 
+constexpr double kOtherRock = 4;    // times the D50 of the scenario: other rock, or other units
 constexpr double kMuchAbove = 0.2;  // of the mass above the crest: the pile and the bench do not fit
 
 // Of the run, the scenario or its grading, not of the pile.
@@ -23,6 +24,20 @@ constexpr std::array kOfDumps{"layer_coarsening_down", "layer_variance_between",
                               "point1_toe_width_m"};
 
 void note_misfit(const Scenario& scenario, const SeedResult& seed, std::vector<std::string>& notes) {
+  if (!scenario.grading_file.empty() && !seed.final_state.grains.empty()) {
+    std::vector<double> diameters, masses;
+    for (const Grain& grain : seed.final_state.grains) {
+      diameters.push_back(grain.diameter);
+      masses.push_back(grain.mass);
+    }
+    const double pile = PassingCurve(diameters, masses).diameter(0.5),
+                 dumped = read_grading(scenario.grading_file).diameter(0.5);
+    if (pile > kOtherRock * dumped || dumped > kOtherRock * pile)
+      notes.push_back(fmt::format(
+          "D50 of this pile is {:.3g} m, that of the scenario's grading {:.3g} m: is it this rock, "
+          "and are the units right (--length-unit)?",
+          pile, dumped));
+  }
   double lowest = std::numeric_limits<double>::max(), largest = 0, mass = 0;
   for (const Grain& grain : seed.final_state.grains) {
     lowest = std::min(lowest, grain.position.z() - 0.5 * grain.diameter);

@@ -7,6 +7,7 @@
 #include "cli/ensemble/study_file.h"
 #include "cli/ensemble/sweep_results.h"
 #include "cli/ensemble_console.h"
+#include "cli/option_values.h"
 #include "cli/output_folder.h"
 
 namespace fs = std::filesystem;
@@ -30,6 +31,7 @@ std::vector<scree::StudyOption> options_of(const scree::Study& study,
 }  // namespace
 
 int run_study(const StudyOptions& options) {
+  if (!is_of_kind(options.file, scree::FileKind::study)) return kBadInput;
   const scree::StudyResult loaded = scree::load_study(options.file, asset_dir());
   for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
   if (!loaded.errors.empty()) return kBadInput;
@@ -45,7 +47,7 @@ int run_study(const StudyOptions& options) {
   }
   if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
   const std::vector<scree::RunRequest> requests = scree::requests_of(study.sweep, asset_dir());
-  const auto store = open_store(options.ensemble.store, options.list);
+  const auto store = open_store(options.ensemble.store, options.list ? StoreUse::look : StoreUse::change);
   if (!store) return kBadInput;
   scree::EnsembleProgress progress;
   if (!options.list) progress = run_with_progress(requests, *store, options.ensemble);

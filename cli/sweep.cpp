@@ -10,6 +10,8 @@
 #include "cli/ensemble/output_scope.h"
 #include "cli/ensemble/sweep_results.h"
 #include "cli/ensemble_console.h"
+#include "cli/option_values.h"
+#include "cli/output_folder.h"
 
 namespace fs = std::filesystem;
 using scree::PointResults;
@@ -158,15 +160,7 @@ bool can_be_written(const SweepOptions& options, const scree::Sweep& sweep) {
     fmt::print(stderr, "--plot {}: an SVG is drawn; name it so, FILE.svg\n", options.plot.string());
     return false;
   }
-  for (const fs::path& file : {options.csv, options.plot}) {
-    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-    std::error_code none;
-    if (file.empty() || (fs::is_directory(folder, none) && !fs::is_directory(file, none))) continue;
-    fmt::print(stderr, "{}: cannot be written: {}\n", file.string(),
-               fs::is_directory(file, none) ? "it is a folder" : "its folder is not there");
-    return false;
-  }
-  return true;
+  return (options.csv.empty() || may_write(options.csv)) && (options.plot.empty() || may_write(options.plot));
 }
 
 // Tables and pictures of what is known.
@@ -198,6 +192,7 @@ int show(const SweepOptions& options, const scree::Sweep& sweep, const std::vect
 }  // namespace
 
 int run_sweep(const SweepOptions& options) {
+  if (!is_of_kind(options.file, scree::FileKind::sweep)) return kBadInput;
   const scree::SweepResult loaded = scree::load_sweep(options.file, asset_dir());
   for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
   if (!loaded.errors.empty()) return kBadInput;
@@ -221,7 +216,8 @@ int run_sweep(const SweepOptions& options) {
 
   const std::vector<scree::RunRequest> requests = scree::requests_of(sweep, asset_dir());
   const bool only_look = options.list || options.failed;
-  const std::unique_ptr<scree::ResultsStore> store = open_store(options.ensemble.store, only_look);
+  const std::unique_ptr<scree::ResultsStore> store =
+      open_store(options.ensemble.store, only_look ? StoreUse::list : StoreUse::change);
   if (!store) return kBadInput;
   scree::EnsembleProgress progress;
   if (!only_look) progress = run_with_progress(requests, *store, options.ensemble);

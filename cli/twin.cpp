@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/ensemble_console.h"
+#include "cli/option_values.h"
 #include "cli/output_folder.h"
 #include "cli/run_through.h"
 #include "sim/io/text_file.h"
@@ -25,6 +26,10 @@ bool draw(const TwinOptions& options, const scree::DiagnosisModel& model, scree:
   scree::Random random(spec.seed, 1, scree::RandomPurpose::measurement);
   std::vector<std::string> asked = options.effects;
   if (asked.empty()) asked.push_back("random");
+  if (asked.size() > 1 && std::find(asked.begin(), asked.end(), "none") != asked.end()) {
+    fmt::print(stderr, "--effect none: stands alone\n");
+    return false;
+  }
   const auto add = [&](const std::string& effect) {  // once
     if (std::find(spec.effects.begin(), spec.effects.end(), effect) == spec.effects.end())
       spec.effects.push_back(effect);
@@ -64,6 +69,7 @@ bool draw(const TwinOptions& options, const scree::DiagnosisModel& model, scree:
 }  // namespace
 
 int run_twin(const TwinOptions& options) {
+  if (!is_of_kind(options.model, scree::FileKind::model)) return kBadInput;
   scree::DiagnosisModelResult loaded = scree::load_model(options.model, asset_dir());
   for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
   if (!loaded.errors.empty()) return kBadInput;
@@ -89,11 +95,11 @@ int run_twin(const TwinOptions& options) {
   const fs::path answer = options.answer.empty() ? fs::path(out.string() + ".answer.json") : options.answer;
   const bool was_there = fs::exists(out);
   if (!prepare_folder(out, options.force)) return kBadInput;
-  const auto store = open_store(options.ensemble.store, false);
+  const auto store = open_store(options.ensemble.store, StoreUse::change);
   // What made the truth is not where diagnose looks.
   const fs::path hidden_file = answer.string() + ".runs.sqlite";
   const bool were_runs = fs::exists(hidden_file);
-  const auto hidden = open_store(hidden_file, false);
+  const auto hidden = open_store(hidden_file, StoreUse::change);
   if (!store || !hidden) return kBadInput;
   try {
     const scree::Twin twin = scree::make_twin(model, spec, asset_dir(), run_through(*store, options.ensemble),

@@ -2,7 +2,12 @@
 
 #include "analysis/results/output_units.h"
 #include "cli/commands.h"
+#include "cli/ensemble/calibrate.h"
 #include "cli/ensemble/dataset_file.h"
+#include "cli/ensemble/equivalence_fit.h"
+#include "cli/ensemble/file_kind.h"
+#include "cli/ensemble/model_file.h"
+#include "cli/ensemble/study_file.h"
 #include "sim/scene/estimate.h"
 #include "sim/scene/scenario.h"
 
@@ -37,13 +42,81 @@ int validate_dataset(const std::filesystem::path& file) {
   return kOk;
 }
 
+// True if nothing is wrong; else all that is, on stderr.
+bool good(const std::vector<scree::ScenarioError>& errors) {
+  for (const scree::ScenarioError& error : errors) fmt::print(stderr, "{}\n", error.text());
+  return errors.empty();
+}
+
+int validate_sweep(const std::filesystem::path& file) {
+  const scree::SweepResult loaded = scree::load_sweep(file, asset_dir());
+  if (!good(loaded.errors)) return kBadInput;
+  std::size_t runs = 0;
+  for (const scree::SweepPoint& point : loaded.sweep.points) runs += point.scenario.seeds.size();
+  fmt::print("{}: ok: sweep over {}, {} points, {} runs\n", file.string(),
+             fmt::join(loaded.sweep.parameters, ", "), loaded.sweep.points.size(), runs);
+  return kOk;
+}
+
+int validate_calibration(const std::filesystem::path& file) {
+  if (scree::is_equivalence(file)) {
+    const scree::EquivalenceSpecResult loaded = scree::load_equivalence(file);
+    if (!good(loaded.errors)) return kBadInput;
+    fmt::print("{}: ok: equivalent settings of engine impulse, by {}\n", file.string(), loaded.spec.output);
+    return kOk;
+  }
+  const scree::CalibrationSpecResult loaded = scree::load_calibration(file);
+  if (!good(loaded.errors)) return kBadInput;
+  if (const std::string why = scree::why_not_run(loaded.spec, asset_dir()); !why.empty()) {
+    fmt::print(stderr, "{}: {}\n", file.string(), why);
+    return kBadInput;
+  }
+  fmt::print("{}: ok: calibration of {} by {} target{}\n", file.string(),
+             fmt::join(scree::names_of(loaded.spec), ", "), loaded.spec.targets.size(),
+             loaded.spec.targets.size() == 1 ? "" : "s");
+  return kOk;
+}
+
+int validate_study(const std::filesystem::path& file) {
+  const scree::StudyResult loaded = scree::load_study(file, asset_dir());
+  if (!good(loaded.errors)) return kBadInput;
+  fmt::print("{}: ok: study of {} options, ranked by {}\n", file.string(), loaded.study.options.size(),
+             loaded.study.rank_by);
+  return kOk;
+}
+
+int validate_model(const std::filesystem::path& file) {
+  const scree::DiagnosisModelResult loaded = scree::load_model(file, asset_dir());
+  if (!good(loaded.errors)) return kBadInput;
+  std::vector<std::string> parameters;
+  for (const scree::BaseAxis& axis : loaded.model.base) parameters.push_back(axis.key);
+  fmt::print("{}: ok: model, parameters {}, effects {}\n", file.string(), fmt::join(parameters, ", "),
+             fmt::join(loaded.model.effects, ", "));
+  return kOk;
+}
+
 }  // namespace
 
 int run_validate(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  if (scree::is_dataset(file)) {
-    if (overrides.empty()) return validate_dataset(file);
-    fmt::print(stderr, "--set: a dataset names what differs from its scenarios itself (set)\n");
+  const scree::FileKind kind = scree::kind_of(file);
+  if (kind != scree::FileKind::scenario && kind != scree::FileKind::unknown && !overrides.empty()) {
+    fmt::print(stderr, "--set: changes a scenario; this file says itself what differs from its scenarios\n");
     return kBadInput;
+  }
+  switch (kind) {
+    case scree::FileKind::dataset:
+      return validate_dataset(file);
+    case scree::FileKind::sweep:
+      return validate_sweep(file);
+    case scree::FileKind::calibration:
+      return validate_calibration(file);
+    case scree::FileKind::study:
+      return validate_study(file);
+    case scree::FileKind::model:
+      return validate_model(file);
+    case scree::FileKind::scenario:
+    case scree::FileKind::unknown:
+      break;
   }
   const scree::ScenarioResult result = scree::load_scenario(file, overrides, asset_dir());
   for (const std::string& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning);

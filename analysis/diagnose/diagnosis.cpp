@@ -29,7 +29,9 @@ constexpr double kStep = 0.05;          // of a numerical derivative by a coordi
 
 // `scatter_freedom`: of the covariance; infinite if it is known.
 double p_of(double chi2, int freedom, double scatter_freedom) {
-  if (freedom < 1 || !(chi2 > 0)) return 1;
+  if (std::isnan(chi2))
+    throw std::runtime_error("a misfit is no number: the measurements' covariance, or what was simulated");
+  if (freedom < 1 || chi2 <= 0) return 1;
   if (std::isinf(scatter_freedom))
     return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), chi2));
   return boost::math::cdf(
@@ -52,6 +54,8 @@ Density density(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covari
   const Eigen::MatrixXd c =
       scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal();
   const Eigen::LLT<Eigen::MatrixXd> factor(c);
+  if (factor.info() != Eigen::Success)
+    throw std::runtime_error("the covariance of measurements and simulations is not positive definite");
   const double chi2 = factor.matrixL().solve(d).squaredNorm();
   const double n = static_cast<double>(difference.size());
   const double log_shape = std::isinf(scatter_freedom)

@@ -74,10 +74,10 @@ class Proposal {
         x[k] = box_.low[k] + random.uniform() * (box_.high[k] - box_.low[k]);
       return x;
     }
-    for (Eigen::Index k = 0; k < d; ++k) x[k] = normal(random);
+    for (Eigen::Index k = 0; k < d; ++k) x[k] = random.normal();
     double chi2 = 0;
     for (int k = 0; k < static_cast<int>(kFreedom); ++k) {
-      const double z = normal(random);
+      const double z = random.normal();
       chi2 += z * z;
     }
     return mean_ + factor_.matrixL() * x * std::sqrt(kFreedom / chi2);
@@ -90,9 +90,6 @@ class Proposal {
   }
 
  private:
-  static double normal(Random& random) {
-    return std::sqrt(-2 * std::log(1 - random.uniform())) * std::cos(2 * std::numbers::pi * random.uniform());
-  }
   const ParameterBox& box_;
   Eigen::VectorXd mean_;
   Eigen::LLT<Eigen::MatrixXd> factor_;

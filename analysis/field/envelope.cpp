@@ -81,6 +81,10 @@ Grading with_sieved_fines(const Grading& curve, const Grading& sieved, double li
   const double share = curve.passing(limit), of_sample = sieved.passing(limit);
   if (!(of_sample > 0))
     throw std::invalid_argument(fmt::format("the sieved sample has nothing below {} m", limit));
+  if (limit > sieved.points().back().diameter)
+    throw std::invalid_argument(fmt::format(
+        "the sieved sample ends at {:g} m, below the limit of {:g} m: nothing says what lies between",
+        sieved.points().back().diameter, limit));
   if (share >= 1) throw std::invalid_argument(fmt::format("a curve has nothing above {} m", limit));
   if (share == 0) return curve;
   std::vector<Grading::Point> points;

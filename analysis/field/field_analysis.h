@@ -65,6 +65,11 @@ struct FieldSection {
   OriginFit chi_fit, chi_given_fit;  ///< of chi against D90 / D15 of the original, through the origin
 
   Spread spread(const std::string& quantity) const { return spread_over(values.at(quantity)); }
+  /// A picture at least has this quantity here.
+  bool has(const std::string& quantity) const {
+    const auto found = values.find(quantity);
+    return found != values.end() && mean_std(found->second).n > 0;
+  }
   /// The curve that stands for the section, with fines or as seen; null if there is none.
   const Grading* curve(CurveKind kind, bool with_fines) const;
 };

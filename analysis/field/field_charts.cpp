@@ -37,11 +37,6 @@ void draw_panels(const std::vector<FieldSection>& sections, const std::string& c
   run_gnuplot(script + plots + "unset multiplot\n", file);
 }
 
-bool has(const FieldSection& section, const char* quantity) {
-  const auto found = section.values.find(quantity);
-  return found != section.values.end() && mean_std(found->second).n > 0;
-}
-
 std::string range_of(const FieldAnalysis& field) {
   double low = INFINITY, high = 0;
   for (const FieldSection& section : field.sections)
@@ -107,7 +102,7 @@ Picture draw_histogram(const FieldAnalysis& field, const char* quantity, const f
   const bool length = what.unit[0] == 'm';
   double most = 0, low = INFINITY, high = 0;
   for (const FieldSection& section : field.sections) {
-    if (!has(section, quantity)) continue;
+    if (!section.has(quantity)) continue;
     const Histogram bins = histogram(section.values.at(quantity), field.bin_of(quantity));
     const MeanStd both = mean_std(section.values.at(quantity));
     most = std::max(most, bins.shares[bins.mode()]);
@@ -120,7 +115,7 @@ Picture draw_histogram(const FieldAnalysis& field, const char* quantity, const f
       "0.5\n",
       1.1 * most, low, high, round_number_above((high - low) / 6));
   const auto panel = [&](const FieldSection& section, std::string& blocks) {
-    if (!has(section, quantity)) return std::string();
+    if (!section.has(quantity)) return std::string();
     const Histogram bins = histogram(section.values.at(quantity), field.bin_of(quantity));
     const Spread spread = section.spread(quantity);
     blocks += fmt::format("${} << END\n", section.name);

@@ -188,7 +188,7 @@ Number conductivity(const FieldAnalysis& field, const Parts& parts) {
 }
 
 const std::vector<Form>& forms() {
-  const std::string section = "_(whole|S[0-9]+)", value = "_(-?[0-9.]+)",
+  const std::string section = "_(whole|S[0-9]+)", value = "_(-?[0-9]+(?:\\.[0-9]+)?)",
                     curve = "((?:median|mean|meandiameter)(?:filled)?)";
   static const std::vector<Form> all{
       {std::regex("(.+)_(mean|std|median|min|max)" + section), statistic},
@@ -202,8 +202,8 @@ const std::vector<Form>& forms() {
       {std::regex("(.+)_ratioabove" + value + section + section), ratio_above},
       {std::regex("(.+)_place" + value), place},
       {std::regex("chi(given)?_(fit|r2)" + section), fit},
-      {std::regex("passingstd_(max|at_[0-9.]+)" + section), passing_std},
-      {std::regex(curve + "_(d[0-9]+|cu|cc)" + section), of_curve},
+      {std::regex("passingstd_(max|at_[0-9]+(?:\\.[0-9]+)?)" + section), passing_std},
+      {std::regex(curve + "_(d[0-9]{1,2}|d100|cu|cc)" + section), of_curve},
       {std::regex(curve + "_share" + value + value + section), share},
       {std::regex(curve + "_(kcm|taylor)" + section), conductivity},
   };

@@ -18,11 +18,6 @@ namespace {
 constexpr double kSignificant = 0.05;
 constexpr double kChiDiffers = 0.1;  // above what tables printed to two digits can make
 
-bool has(const FieldSection& section, const char* quantity) {
-  const auto found = section.values.find(quantity);
-  return found != section.values.end() && mean_std(found->second).n > 0;
-}
-
 std::string table(const std::string& head, const std::string& rows) {
   return fmt::format(
       "<div class=\"wide\"><table><thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>\n", head, rows);
@@ -40,14 +35,14 @@ std::string section_table(const FieldAnalysis& field) {
                                    "chi_given", "d10_rel", "d50_rel", "d80_rel"};
   std::string head = "<th class=\"word\">Section</th><th>x/L</th>", rows;
   for (const char* name : shown)
-    if (has(field.sections.front(), name))
+    if (field.sections.front().has(name))
       head += fmt::format("<th>{}</th>", html_escaped(field_quantity(name)->words));
   const auto row = [&](const FieldSection& section) {
     rows += fmt::format("<tr><td class=\"word\">{}</td><td>{}</td>", section.name,
                         decimals_text(section.x_over_l, 2));
     for (const char* name : shown) {
-      if (!has(field.sections.front(), name)) continue;
-      if (!has(section, name)) {
+      if (!field.sections.front().has(name)) continue;
+      if (!section.has(name)) {
         rows += "<td>–</td>";
         continue;
       }
@@ -57,7 +52,7 @@ std::string section_table(const FieldAnalysis& field) {
     }
     rows += "</tr>\n";
   };
-  if (has(field.whole, "d50")) row(field.whole);
+  if (field.whole.has("d50")) row(field.whole);
   for (const FieldSection& section : field.sections) row(section);
   return "<h2>Sections</h2>\n<p>Mean and standard deviation over the pictures, and the median.</p>\n" +
          table(head, rows);
@@ -142,7 +137,7 @@ std::string ksat_table(const FieldAnalysis& field) {
 }
 
 std::string given_table(const FieldAnalysis& field) {
-  if (!has(field.sections.front(), "chi_given")) return "";
+  if (!field.sections.front().has("chi_given")) return "";
   std::string rows;
   for (std::size_t i = 0; i < field.pictures.size(); ++i) {
     double largest = 0;

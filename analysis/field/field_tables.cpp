@@ -20,17 +20,12 @@ std::vector<const FieldSection*> parts_of(const FieldAnalysis& field) {
   return all;
 }
 
-bool has(const FieldSection& section, const std::string& quantity) {
-  const auto found = section.values.find(quantity);
-  return found != section.values.end() && mean_std(found->second).n > 0;
-}
-
 std::string statistics(const FieldAnalysis& field) {
   std::string text =
       "section,quantity,unit,n,mean,std,median,low68,high68,low95,high95,min,max,p_normal,p_lognormal\n";
   for (const FieldSection* section : parts_of(field))
     for (const FieldQuantity& quantity : field_quantities()) {
-      if (!has(*section, quantity.name)) continue;
+      if (!section->has(quantity.name)) continue;
       const Spread s = section->spread(quantity.name);
       text += fmt::format(
           "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", section->name, quantity.name, quantity.unit,
@@ -75,7 +70,7 @@ std::string histograms(const FieldAnalysis& field) {
   std::string text = "quantity,section,from,to,share\n";
   for (const char* quantity : kHistogramQuantities)
     for (const FieldSection* section : parts_of(field)) {
-      if (!has(*section, quantity)) continue;
+      if (!section->has(quantity)) continue;
       const Histogram bins = histogram(section->values.at(quantity), field.bin_of(quantity));
       for (std::size_t k = 0; k < bins.shares.size(); ++k)
         text +=
@@ -181,7 +176,7 @@ void write_field_tables(const FieldAnalysis& field, const std::vector<HeldValue>
   write_text_file(folder / "histograms.csv", histograms(field));
   write_text_file(folder / "chi_fit.csv", chi_fits(field));
   write_text_file(folder / "ksat.csv", conductivities(field));
-  if (has(field.sections.front(), "chi_given")) write_text_file(folder / "chi_given.csv", given_chi(field));
+  if (field.sections.front().has("chi_given")) write_text_file(folder / "chi_given.csv", given_chi(field));
   if (!printed.empty()) write_text_file(folder / "printed.csv", printed_table(printed));
   if (const Grading* seen = field.whole.curve(CurveKind::medians, false))
     write_text_file(folder / "median_whole.csv",

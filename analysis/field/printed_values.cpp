@@ -1,9 +1,12 @@
 #include "analysis/field/printed_values.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "analysis/field/field_numbers.h"
+#include "sim/io/input_text.h"
 #include "sim/material/csv_table.h"
 #include "sim/material/random.h"
 
@@ -53,6 +56,8 @@ std::vector<PrintedValue> read_printed_values(const std::filesystem::path& file)
   while (table.next()) {
     PrintedValue value;
     value.name = table.text("name");
+    if (value.name.size() > kLongestName)
+      table.fail(fmt::format("name has {} letters; {} are allowed", value.name.size(), kLongestName));
     value.what = table.text("what");
     value.value = table.number("value");
     value.unit = table.text("unit");

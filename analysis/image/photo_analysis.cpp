@@ -56,10 +56,18 @@ ImageScale scale_for(const cv::Mat3b& picture, const PhotoAnalysisSettings& sett
   return scale;
 }
 
-cv::Rect box_of_region(const cv::Mat3b& picture, const std::vector<cv::Point>& region) {
+cv::Rect box_of_region(const cv::Mat3b& picture, const std::vector<cv::Point>& region,
+                       std::vector<std::string>& notes) {
   const cv::Rect frame(0, 0, picture.cols, picture.rows);
   if (region.empty()) return frame;
-  const cv::Rect box = cv::boundingRect(region) & frame;
+  cv::Rect whole = cv::boundingRect(region);  // reaches one beyond the last corner
+  const cv::Rect box = whole & frame;
+  if (whole.x < 0 || whole.y < 0 || whole.x + whole.width > frame.width + 1 ||
+      whole.y + whole.height > frame.height + 1)
+    notes.push_back(
+        fmt::format("the region reaches beyond the picture of {} x {} pixels; sections are those of the part "
+                    "within",
+                    picture.cols, picture.rows));
   if (box.width < 10 || box.height < 10)
     throw std::runtime_error(fmt::format("the region has {} x {} pixels within the picture of {} x {}",
                                          box.width, box.height, picture.cols, picture.rows));
@@ -79,7 +87,7 @@ PhotoAnalysis analyse_photo(const cv::Mat3b& picture, const PhotoAnalysisSetting
   cv::Mat1b ignore;
   out.targets = find_targets(picture, ignore);
   out.scale = scale_for(picture, settings, out);
-  out.region_box = box_of_region(picture, settings.region);
+  out.region_box = box_of_region(picture, settings.region, out.notes);
   cv::Mat1b region(picture.size(), static_cast<uchar>(settings.region.empty() ? 255 : 0));
   if (!settings.region.empty()) cv::fillPoly(region, std::vector{settings.region}, 255);
   // What lies outside says nothing of how bright rock is.

@@ -9,7 +9,7 @@
 #include "analysis/image/grain_size.h"
 #include "analysis/image/grain_split.h"
 #include "analysis/image/scale_target.h"
-#include "analysis/pile/segregation.h"
+#include "analysis/pile/passing_curve.h"
 
 namespace scree {
 

@@ -1,10 +1,10 @@
+#include "analysis/pile/passing_curve.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
-
-#include "analysis/pile/segregation.h"
 
 namespace scree {
 namespace {
@@ -135,10 +135,6 @@ double PassingCurve::mean_log_diameter() const {
 
 double PassingCurve::coarsest_quartile_log_diameter() const {
   return mean_log_between(seen().diameters, seen().cumulative, 0.75 * seen().mass(), seen().mass());
-}
-
-double PassingCurve::finest_quartile_log_diameter() const {
-  return mean_log_between(seen().diameters, seen().cumulative, 0, 0.25 * seen().mass());
 }
 
 }  // namespace scree

@@ -5,6 +5,8 @@
 #include <regex>
 #include <string_view>
 
+#include "sim/io/input_text.h"
+
 namespace scree {
 namespace {
 
@@ -45,6 +47,7 @@ bool ends_with(std::string_view text, std::string_view end) {
 
 std::string unit_of_output(const std::string& output) {
   if (output == "simulated_seconds") return "s";
+  if (output.size() > kLongestName) return "";
   // The part of the pile that a name ends with says nothing of the unit.
   static const std::regex part("_(S[0-9]+(of[0-9]+)?(_dump[0-9]+)?|top|middle|bottom|ring[0-9]+)$");
   const std::string quantity = std::regex_replace(output, part, "");

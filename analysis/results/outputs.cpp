@@ -9,6 +9,7 @@
 #include <set>
 
 #include "analysis/results/summary.h"
+#include "sim/io/input_text.h"
 
 namespace scree {
 namespace {
@@ -51,7 +52,7 @@ enum class Given { yes, no, not_by_this_one };
 Given given(const OutputScope& scope, const std::string& output) {
   const std::vector<std::string> plain = plain_names(scope.experiment);
   if (std::find(plain.begin(), plain.end(), output) != plain.end()) return Given::yes;
-  if (!has_sections(scope.experiment)) return Given::no;
+  if (!has_sections(scope.experiment) || output.size() > kLongestName) return Given::no;
   // Numbers of up to four digits: no pile has more sections or loads.
   static const std::regex slope(
       "([a-z0-9_]+)_S([1-9][0-9]{0,3})(?:of([1-9][0-9]{0,3}))?(?:_dump([1-9][0-9]{0,3}))?");

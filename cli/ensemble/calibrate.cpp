@@ -7,6 +7,7 @@
 #include <set>
 
 #include "cli/ensemble/design.h"
+#include "cli/ensemble/output_scope.h"
 
 namespace scree {
 namespace {
@@ -225,6 +226,41 @@ CalibrationAnswer answer_of(const CalibrationSpec& spec, const CalibrationResult
 double parameter_value(const CalibrationSpec& spec, int parameter, double share) {
   const FileReader::Span& span = spec.parameters[static_cast<std::size_t>(parameter)];
   return span.from + share * (span.to - span.from);
+}
+
+std::vector<std::string> names_of(const CalibrationSpec& spec) {
+  std::vector<std::string> names;
+  for (const auto& span : spec.parameters) names.push_back(span.key);
+  return names;
+}
+
+std::vector<double> values_at(const CalibrationSpec& spec, const Eigen::VectorXd& shares) {
+  std::vector<double> values;
+  for (int k = 0; k < shares.size(); ++k) values.push_back(parameter_value(spec, k, shares[k]));
+  return values;
+}
+
+ScenarioResult calibrated_scenario(const CalibrationSpec& spec, const std::filesystem::path& scenario,
+                                   const std::vector<double>& values,
+                                   const std::filesystem::path& asset_dir) {
+  std::vector<std::string> texts;
+  for (const double value : values) texts.push_back(fmt::format("{:.6g}", value));
+  return load_scenario(scenario, overrides_of(spec.variation, names_of(spec), texts), asset_dir);
+}
+
+std::string why_not_run(const CalibrationSpec& spec, const std::filesystem::path& asset_dir) {
+  for (const auto& target : spec.targets) {
+    for (const double share : {0.0, 1.0}) {
+      const Eigen::VectorXd end =
+          Eigen::VectorXd::Constant(static_cast<Eigen::Index>(spec.parameters.size()), share);
+      const ScenarioResult loaded =
+          calibrated_scenario(spec, target.scenario, values_at(spec, end), asset_dir);
+      if (!loaded.errors.empty()) return loaded.errors.front().text();
+      if (const std::string why = why_not_given(loaded.scenario, target.output); !why.empty())
+        return fmt::format("output '{}': {}", target.output, why);
+    }
+  }
+  return {};
 }
 
 CalibrationResult calibrate(const CalibrationSpec& spec, const Simulator& simulate) {

@@ -58,8 +58,17 @@ struct CalibrationAnswer {
 /// three the mean.
 CalibrationAnswer answer_of(const CalibrationSpec& spec, const CalibrationResult& result);
 
-/// A value of a parameter from its share of the way between its ends, and as text for a scenario.
+/// Keys of the parameters.
+std::vector<std::string> names_of(const CalibrationSpec& spec);
+/// A value of a parameter, or of all of them, from its share of the way between its ends.
 double parameter_value(const CalibrationSpec& spec, int parameter, double share);
+std::vector<double> values_at(const CalibrationSpec& spec, const Eigen::VectorXd& shares);
+/// One of its scenarios with these values of the parameters.
+ScenarioResult calibrated_scenario(const CalibrationSpec& spec, const std::filesystem::path& scenario,
+                                   const std::vector<double>& values, const std::filesystem::path& asset_dir);
+/// What would be refused only after simulations have cost time: ends of the ranges, and outputs that a
+/// scenario does not give. Empty if all is well.
+std::string why_not_run(const CalibrationSpec& spec, const std::filesystem::path& asset_dir);
 
 /// Runs the calibration. `bayes`: a Sobol design first, a new seed at each point; then, some at a time, where
 /// the posterior says that it helps most.

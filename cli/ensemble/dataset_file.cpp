@@ -110,10 +110,4 @@ DatasetResult load_dataset(const fs::path& file, const fs::path& asset_dir) {
   return result;
 }
 
-bool is_dataset(const fs::path& file) {
-  std::vector<ScenarioError> errors;
-  const auto root = read_yaml(file, errors);
-  return root && root->find("observables") != nullptr;
-}
-
 }  // namespace scree

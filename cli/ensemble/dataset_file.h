@@ -70,7 +70,4 @@ std::optional<Dataset::Experiment> read_experiment(const YamlEntry& entry, const
                                                    const std::vector<std::string>& allowed,
                                                    FileReader& reader);
 
-/// Whether a YAML file is meant to be a dataset: it has the key `observables`. False if it cannot be read.
-bool is_dataset(const std::filesystem::path& file);
-
 }  // namespace scree

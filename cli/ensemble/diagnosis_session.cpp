@@ -192,6 +192,7 @@ GatheredRuns gather(const ExperimentRuns& planned, const std::vector<std::option
 JoinedData join_datasets(const std::vector<Dataset>& datasets) {
   JoinedData joined;
   std::map<std::string, int> names;
+  std::set<std::string> taken;
   for (const Dataset& dataset : datasets)
     for (const Dataset::Experiment& experiment : dataset.experiments) ++names[experiment.name];
   std::vector<std::pair<const Dataset*, std::size_t>> rows;  // by joined value: where it stands
@@ -200,6 +201,9 @@ JoinedData join_datasets(const std::vector<Dataset>& datasets) {
     for (std::size_t e = 0; e < dataset.experiments.size(); ++e) {
       Dataset::Experiment experiment = dataset.experiments[e];
       if (names[experiment.name] > 1) experiment.name = dataset.name + "." + experiment.name;
+      const std::string name = experiment.name;  // datasets may share a name, too
+      for (int k = 2; !taken.insert(experiment.name).second; ++k)
+        experiment.name = fmt::format("{}-{}", name, k);
       bool measured = false;
       for (std::size_t k = 0; k < dataset.observables.size(); ++k) {
         const Dataset::Observable& row = dataset.observables[k];
@@ -416,6 +420,10 @@ SimulatedModel DiagnosisSession::nominal_of_design() const {
     std::vector<const DesignRun*> these;
     for (const DesignRun& each : runs)
       if (each.at.effects.empty() && each.at.base == space_.nominal()) these.push_back(&each);
+    if (these.empty())
+      throw std::runtime_error(
+          fmt::format("{}: no simulation with the nominal parameters gives the numbers that were measured",
+                      data_.measured.experiments[static_cast<std::size_t>(&runs - learnt_.data())]));
     nominal.runs = std::min(nominal.runs, static_cast<int>(these.size()));
     for (Eigen::Index c = 0; c < runs.front().outputs.size(); ++c, ++next) {
       double sum = 0, square = 0;

@@ -14,7 +14,7 @@
 #include <thread>
 
 #include "cli/ensemble/executor.h"
-#include "cli/exit_code.h"
+#include "cli/ensemble/exit_code.h"
 
 namespace scree {
 namespace {
@@ -121,8 +121,10 @@ std::optional<EndedJob> LocalProcesses::wait(double patience) {
   while (true) {
     for (auto process = processes_.begin(); process != processes_.end(); ++process) {
       int status = 0;
-      if (waitpid(process->pid, &status, WNOHANG) != process->pid) continue;
-      const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+      const pid_t ended_one = waitpid(process->pid, &status, WNOHANG);
+      const bool lost = ended_one < 0 && errno == ECHILD;  // it ended, and nobody knows how
+      if (ended_one != process->pid && !lost) continue;
+      const int code = !lost && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
       EndedJob ended{process->job.key,
                      code == 0              ? JobEnd::good
                      : code == kInterrupted ? JobEnd::interrupted
@@ -134,9 +136,10 @@ std::optional<EndedJob> LocalProcesses::wait(double patience) {
                      share_in(process->job.folder / "log.txt", process->job.resume).before};
       if (ended.end == JobEnd::bad || ended.end == JobEnd::refused) {
         const std::string words = words_in(process->job.folder / "log.txt");
-        ended.message = WIFSIGNALED(status) ? fmt::format("killed by signal {}", WTERMSIG(status))
-                        : words.empty()     ? fmt::format("exit status {}", WEXITSTATUS(status))
-                                            : words;
+        ended.message = lost                  ? "it ended, and how is not known"
+                        : WIFSIGNALED(status) ? fmt::format("killed by signal {}", WTERMSIG(status))
+                        : words.empty()       ? fmt::format("exit status {}", WEXITSTATUS(status))
+                                              : words;
       }
       processes_.erase(process);
       return ended;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 
 #include "analysis/diagnose/blocks.h"
@@ -28,10 +27,6 @@ std::vector<Dataset::Experiment> experiments_of(const DiagnosisModel& model) {
   std::vector<Dataset::Experiment> all;
   for (const ModelExperiment& each : model.experiments) all.push_back(each.experiment);
   return all;
-}
-
-double normal(Random& random) {
-  return std::sqrt(-2 * std::log(1 - random.uniform())) * std::cos(2 * std::numbers::pi * random.uniform());
 }
 
 // The runs of all experiments; their results by experiment.
@@ -312,7 +307,7 @@ class TwinMaker {
         const auto column = static_cast<Eigen::Index>(c);
         std::vector<double> values;
         for (const DesignRun& run : simulated[e])
-          values.push_back(run.outputs[column] + std::sqrt(error_variances_[e][column]) * normal(random_));
+          values.push_back(run.outputs[column] + std::sqrt(error_variances_[e][column]) * random_.normal());
         draft.observables[outputs_of(e)[c]] = mean_std(values);
       }
       data.experiments.push_back(std::move(draft));

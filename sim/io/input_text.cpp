@@ -63,9 +63,13 @@ DelimitedTable::DelimitedTable(const std::filesystem::path& file)
   read_row();
   header_line_ = row_line_;
   header_.assign(fields_.begin(), fields_.begin() + static_cast<std::ptrdiff_t>(used_));
-  for (std::size_t k = 0; k < header_.size(); ++k)
+  for (std::size_t k = 0; k < header_.size(); ++k) {
+    if (header_[k].size() > kLongestName)
+      fail(fmt::format("the column {} has a name of {} letters; {} are allowed", in_quotes(header_[k]),
+                       header_[k].size(), kLongestName));
     if (!header_[k].empty() && column(header_[k]) != k)
       fail(fmt::format("the column {} stands twice in the header", in_quotes(header_[k])));
+  }
 }
 
 std::optional<std::size_t> DelimitedTable::column(std::string_view name) const {

@@ -10,6 +10,10 @@
 
 namespace scree {
 
+/// Letters of a column's or a number's name that are looked at; regular expressions go as deep as a name is
+/// long.
+inline constexpr std::size_t kLongestName = 200;
+
 /// A decimal number and nothing else, not infinite; with `comma`, a decimal comma is one too.
 std::optional<double> number_in(std::string_view text, bool comma = false);
 
@@ -23,7 +27,8 @@ std::string in_small_letters(std::string_view text);
 /// with # are passed over; line ends of Windows and a byte order mark are taken. All errors are FileError.
 class DelimitedTable {
  public:
-  /// Throws when the file is empty, no text, or has no header, or a column stands twice in it.
+  /// Throws when the file is empty, no text, or has no header, a column stands twice in it, or
+  /// has a name longer than kLongestName.
   explicit DelimitedTable(const std::filesystem::path& file);
 
   const std::vector<std::string>& header() const { return header_; }  ///< as written, without blanks around

@@ -1,6 +1,8 @@
 #pragma once
 // The one random generator: counter-based, so that a stream depends on nothing but its name.
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 
 namespace scree {
 
@@ -27,6 +29,11 @@ class Random {
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
   /// Uniform in [low, high).
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
+  /// Standard normal (Box & Muller, Ann. Math. Stat. 29 (1958) 610).
+  double normal() {
+    const double radius = std::sqrt(-2 * std::log(1 - uniform()));
+    return radius * std::cos(2 * std::numbers::pi * uniform());
+  }
 
  private:
   static std::uint64_t mix(std::uint64_t z) {

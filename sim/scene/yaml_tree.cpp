@@ -41,8 +41,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void OnDocumentStart(const YAML::Mark& mark) override {
-    if (has_root)
-      throw Refused{place(mark), "a second YAML document begins here; a scenario is one document"};
+    if (has_root) throw Refused{place(mark), "a second YAML document begins here; one document is expected"};
   }
   void OnDocumentEnd() override {}
 
@@ -98,7 +97,7 @@ class TreeBuilder : public YAML::EventHandler {
   static bool plain_tag(const std::string& tag) { return tag.empty() || tag == "?" || tag == "!"; }
 
   void check_tag(const YAML::Mark& mark, const std::string& tag) const {
-    if (!plain_tag(tag)) throw Refused{place(mark), "tag " + shown(tag) + ": a scenario takes no YAML tags"};
+    if (!plain_tag(tag)) throw Refused{place(mark), "tag " + shown(tag) + ": YAML tags are not taken"};
   }
 
   void count(const YAML::Mark& mark, std::size_t more) {
@@ -106,14 +105,16 @@ class TreeBuilder : public YAML::EventHandler {
     if (nodes_ > kMaxNodes)
       throw Refused{
           place(mark),
-          fmt::format("more than {} values, aliases counted each time; this is no scenario", kMaxNodes)};
+          fmt::format("more than {} values, aliases counted each time; no file of scree is like that",
+                      kMaxNodes)};
   }
 
   void open(YamlKind kind, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
     count(mark, 1);
     check_tag(mark, tag);
     if (open_.size() >= kMaxDepth)
-      throw Refused{place(mark), fmt::format("nested deeper than {} levels; this is no scenario", kMaxDepth)};
+      throw Refused{place(mark),
+                    fmt::format("nested deeper than {} levels; no file of scree is like that", kMaxDepth)};
     open_.push_back({make(kind, mark), anchor, {}, {}});
   }
 
@@ -216,7 +217,7 @@ std::optional<YamlNode> read_yaml(const std::filesystem::path& file, std::vector
     return std::nullopt;
   }
   if (!std::filesystem::is_regular_file(status)) {
-    report(errors, whole, "not a file; give a scenario file (YAML)");
+    report(errors, whole, "not a file; give a YAML file");
     return std::nullopt;
   }
   std::ifstream stream(file, std::ios::binary);
@@ -228,7 +229,7 @@ std::optional<YamlNode> read_yaml(const std::filesystem::path& file, std::vector
   }
   text.resize(static_cast<std::size_t>(stream.gcount()));
   if (text.size() > kMaxFileBytes) {
-    report(errors, whole, "larger than 1 MB; this is no scenario");
+    report(errors, whole, "larger than 1 MB; no file of scree is like that");
     return std::nullopt;
   }
   try {
@@ -245,7 +246,7 @@ std::optional<YamlNode> read_yaml(const std::filesystem::path& file, std::vector
   if (root && root->kind == YamlKind::null) {  // a document without content
     root->kind = YamlKind::map;
   } else if (root && root->kind != YamlKind::map) {
-    report(errors, root->place, "a scenario is a map of keys (`key: value`)");
+    report(errors, root->place, "a map of keys (`key: value`) is expected");
     return std::nullopt;
   }
   return root;

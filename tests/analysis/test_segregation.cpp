@@ -60,7 +60,6 @@ TEST(PassingCurve, QuartilesSplitTheGrainAcrossTheirBound) {
   const PassingCurve curve({0.01, 0.1, 1.0}, {4, 3.5, 0.5});
   EXPECT_NEAR(curve.mean_log_diameter(), (4 * -2 + 3.5 * -1 + 0.5 * 0) / 8, 1e-12);
   EXPECT_NEAR(curve.coarsest_quartile_log_diameter(), (1.5 * -1 + 0.5 * 0) / 2, 1e-12);
-  EXPECT_NEAR(curve.finest_quartile_log_diameter(), -2, 1e-12);
 }
 
 TEST(PassingCurve, RefusesEmptyAndUnequal) {

@@ -79,7 +79,7 @@ TEST_F(Field, RefusesWithOneLine) {
            {"field", "--thesis"},
            {"field nowhere.csv" + out, "there is no such file"},
            {"field " + good + " --sieved " + g0 + out, "belong together"},
-           {"field " + good + " --sieved " + g0 + " --limit 3kg" + out, "no length"},
+           {"field " + good + " --sieved " + g0 + " --limit 3kg" + out, "a length above 0"},
            {"field " + good + " --sieved " + g0 + " --limit 0.01mm" + out, "nothing below"},
            {"field " + good + " --void-ratio 0" + out, "--void-ratio"},
            {"field " + good + " --observables chi" + out, "--scenario"},

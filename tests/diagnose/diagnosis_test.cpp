@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <latch>
+#include <limits>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -65,6 +66,12 @@ TEST_F(DiagnosisOf, DetectabilityIsWhatIsLeftAfterCompensation) {
   EXPECT_NEAR(strength(effect + 3 * other_base, none), plain, 1e-9);
   EXPECT_NEAR(strength(effect, none, 4), plain / 2, 1e-9);
   EXPECT_NEAR(strength(effect, 0.75 * effect * effect.transpose()), plain / 2, 1e-9);
+}
+
+TEST_F(DiagnosisOf, AMisfitThatIsNoNumberIsNotTakenForNone) {
+  Measurements measured = world.measure(SyntheticWorld::point(0.5, -0.6), 5, 1);
+  measured.values[0].value = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(diagnose(world.space, measured, model), std::runtime_error);
 }
 
 TEST_F(DiagnosisOf, NominalDataSaysThatNothingIsMissing) {

@@ -10,6 +10,7 @@
 
 #include "cli/ensemble/dataset_file.h"
 #include "cli/ensemble/dataset_write.h"
+#include "cli/ensemble/file_kind.h"
 #include "cli/ensemble/output_scope.h"
 #include "scree_version.h"
 
@@ -160,9 +161,9 @@ TEST_F(DatasetFile, WrongFilesAreNamed) {
   EXPECT_EQ(load_dataset(folder / "a.yaml", source / "assets").errors.size(), 2u)
       << "experiments, observables";
   EXPECT_FALSE(load_dataset(folder / "b.yaml", source / "assets").errors.empty());
-  EXPECT_TRUE(is_dataset(folder / "dataset.yaml"));
-  EXPECT_FALSE(is_dataset(folder / "a.yaml"));
-  EXPECT_FALSE(is_dataset(folder / "b.yaml"));
+  EXPECT_EQ(kind_of(folder / "dataset.yaml"), FileKind::dataset);
+  EXPECT_NE(kind_of(folder / "a.yaml"), FileKind::dataset);
+  EXPECT_NE(kind_of(folder / "b.yaml"), FileKind::dataset);
 }
 
 TEST_F(DatasetFile, DefaultUncertaintyIsStated) {

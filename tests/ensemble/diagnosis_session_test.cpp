@@ -6,6 +6,7 @@
 
 #include <fstream>
 #include <numbers>
+#include <set>
 
 #include "cli/ensemble/scenario_patch.h"
 #include "cli/ensemble/twin.h"
@@ -147,6 +148,14 @@ class Session : public testing::Test {
   FormulaSimulator simulator;
 };
 
+TEST(JoinedDatasets, EveryExperimentHasANameOfItsOwn) {
+  const DatasetResult read = load_dataset(fs::path(kAssets) / "datasets/laboratory/dataset.yaml", kAssets);
+  ASSERT_TRUE(read.errors.empty());
+  const JoinedData joined = join_datasets({read.dataset, read.dataset, read.dataset});
+  const auto& names = joined.measured.experiments;
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), 3 * read.dataset.experiments.size());
+}
+
 TEST_F(Session, ThreadsChangeNothing) {
   const JoinedData data = data_of({{"cohesion"}, 6, 5, 0.5, 3, ""});
   DiagnosisSession alone(model, data, {}, kAssets), shared(model, data, {}, kAssets, 4);
@@ -235,7 +244,8 @@ TEST_F(Session, WhatCannotBeSimulatedAtItsFitIsNotNamed) {
   simulator.fits_fail_with = "cohesion";
   const DiagnosisOutcome o = diagnosed({{"cohesion"}, 6, 5, 0.5, 3, ""});
   EXPECT_GT(simulator.fits_of_others.size(), 10u) << "it does not keep others from being explored";
-  EXPECT_THAT(o.notes, testing::Contains(HasSubstr("cohesion could not be tried by full simulations at its last fit")));
+  EXPECT_THAT(o.notes, testing::Contains(
+                           HasSubstr("cohesion could not be tried by full simulations at its last fit")));
   for (const std::size_t k : o.diagnosis.verdict.named)
     EXPECT_THAT(o.diagnosis.judgements[k].hypothesis.effects, testing::Not(testing::Contains(0u)));
 }

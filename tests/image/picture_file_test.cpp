@@ -129,13 +129,14 @@ TEST_F(PictureFile, DiscsOfKnownSizeComeOutAsTheyAre) {
   EXPECT_THAT(slurp(out / "gradings.csv"), HasSubstr("image,section,d100_cm,d95_cm"));
 }
 
-// The same picture twice has no scatter between repeats: nothing is left for a dataset, and nothing is
+// A picture and its copy have no scatter between repeats: nothing is left for a dataset, and nothing is
 // written.
 TEST_F(PictureFile, ARefusedDatasetLeavesNothing) {
   write_picture(folder_ / "discs.png", grey_with_discs());
-  const std::string photo = (folder_ / "discs.png").string();
+  fs::copy_file(folder_ / "discs.png", folder_ / "copy.png");
+  const std::string photo = (folder_ / "discs.png").string(), copy = (folder_ / "copy.png").string();
   const fs::path out = folder_ / "out";
-  const Called called = call("image " + photo + " " + photo + " --scale 1cm/px --sections 2 --scenario " +
+  const Called called = call("image " + photo + " " + copy + " --scale 1cm/px --sections 2 --scenario " +
                              SCREE_TEST_ASSETS "/../scenarios/small_dump.yaml --out " + out.string());
   EXPECT_EQ(called.code, 2);
   EXPECT_THAT(called.text, testing::HasSubstr("nothing to write a dataset of"));

@@ -135,7 +135,7 @@ TEST(Limits, FilesThatAreNoScenarioAreRefusedQuickly) {
   EXPECT_THAT(folder.messages(std::string("a: ").append(400000, '[')),
               ElementsAre(testing::HasSubstr("nested deeper than 32")));
   EXPECT_THAT(folder.messages(std::string(1000001, '#')),
-              ElementsAre(testing::HasSubstr("larger than 1 MB; this is no scenario")));
+              ElementsAre(testing::HasSubstr("larger than 1 MB; no file of scree is like that")));
   std::string bomb = "a: &a [1,1,1,1,1,1,1,1,1,1]\n";
   for (char c = 'b'; c < 'k'; ++c) {
     const char before = static_cast<char>(c - 1);

@@ -1,0 +1,81 @@
+#include "cli/option_values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "analysis/results/output_units.h"
+#include "sim/io/input_text.h"
+
+namespace {
+
+constexpr double kLongest = 1e4;  // m, or m/px
+
+std::optional<double> length_of(std::string_view text) {
+  const auto unit_at = text.find_first_not_of("0123456789.eE+-");
+  if (unit_at == std::string_view::npos) return std::nullopt;
+  const auto value = scree::number_in(text.substr(0, unit_at));
+  const auto factor = scree::unit_factor(std::string(scree::trimmed(text.substr(unit_at))), "m");
+  if (!value || !factor || !(*value > 0) || *value * *factor > kLongest) return std::nullopt;
+  return *value * *factor;
+}
+
+}  // namespace
+
+std::optional<double> length_in(const std::string& option, const std::string& text) {
+  const auto length = length_of(text);
+  if (!length)
+    fmt::print(stderr, "{} {}: a length above 0 with its unit, like 0.5m, 50cm, 500mm\n", option, text);
+  return length;
+}
+
+std::optional<double> scale_in(const std::string& option, const std::string& text) {
+  const std::string_view given = text;
+  const auto slash = given.find("/px");
+  const auto length = slash == std::string_view::npos || slash + 3 != given.size()
+                          ? std::nullopt
+                          : length_of(given.substr(0, slash));
+  if (!length) fmt::print(stderr, "{} {}: a length a pixel, like 1.2cm/px or 12mm/px\n", option, text);
+  return length;
+}
+
+std::optional<std::pair<double, double>> pair_in(const std::string& option, const std::string& text,
+                                                 char separator) {
+  const std::string_view given = text;
+  const auto at = given.find(separator);
+  if (at != std::string_view::npos) {
+    const auto first = scree::number_in(given.substr(0, at)), second = scree::number_in(given.substr(at + 1));
+    if (first && second) return std::pair(*first, *second);
+  }
+  fmt::print(stderr, "{} {}: two numbers, A{}B\n", option, text, separator);
+  return std::nullopt;
+}
+
+CLI::Validator within(double low, double high) {
+  const auto refuse = [=](const std::string& text) {
+    const auto value = scree::number_in(text);
+    return value && *value >= low && *value <= high
+               ? std::string()
+               : fmt::format("Value {} not in range {:g} to {:g}", text, low, high);
+  };
+  return {refuse, fmt::format("in [{:g} - {:g}]", low, high)};
+}
+
+bool is_of_kind(const std::filesystem::path& file, scree::FileKind wanted) {
+  const std::string why = scree::why_another_kind(file, wanted);
+  if (!why.empty()) fmt::print(stderr, "{}\n", why);
+  return why.empty();
+}
+
+std::string given_twice(const std::vector<std::filesystem::path>& files) {
+  for (const std::filesystem::path& file : files) {
+    std::error_code none;
+    const auto is_same = [&](const std::filesystem::path& other) {
+      return std::filesystem::equivalent(file, other, none);
+    };
+    if (std::count_if(files.begin(), files.end(), is_same) > 1)
+      return file.string() + ": is given twice; every measurement would count twice";
+  }
+  return {};
+}

@@ -1,0 +1,27 @@
+#pragma once
+// Values of options: what they may be, and what is said when they are something else.
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/ensemble/file_kind.h"
+
+/// A number from low to high. CLI::Range lets nan pass.
+CLI::Validator within(double low, double high);
+
+/// Metres of "0.5m", "50cm"; none, with a message that begins with the option's name, if it is no length.
+std::optional<double> length_in(const std::string& option, const std::string& text);
+/// Metres a pixel of "1.2cm/px".
+std::optional<double> scale_in(const std::string& option, const std::string& text);
+/// Two numbers, "135,45" or "1600x1200".
+std::optional<std::pair<double, double>> pair_in(const std::string& option, const std::string& text,
+                                                 char separator);
+
+/// False, with a message, if the file is one of another kind.
+bool is_of_kind(const std::filesystem::path& file, scree::FileKind wanted);
+
+/// What is wrong if two of these names are one file that is there; else empty.
+std::string given_twice(const std::vector<std::filesystem::path>& files);
