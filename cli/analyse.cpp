@@ -15,7 +15,7 @@
 #include "cli/output_folder.h"
 #include "cli/snapshot_outputs.h"
 #include "cli/written_dataset.h"
-#include "sim/io/input_text.h"
+#include "sim/material/input_text.h"
 #include "sim/scene/scenario.h"
 
 namespace fs = std::filesystem;

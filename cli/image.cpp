@@ -20,7 +20,7 @@
 #include "cli/picture_options.h"
 #include "cli/written_dataset.h"
 #include "scree_version.h"
-#include "sim/io/input_text.h"
+#include "sim/material/input_text.h"
 #include "sim/io/text_file.h"
 #include "sim/scene/scenario.h"
 

@@ -6,7 +6,7 @@
 #include <charconv>
 
 #include "analysis/results/output_units.h"
-#include "sim/io/input_text.h"
+#include "sim/material/input_text.h"
 
 namespace {
 

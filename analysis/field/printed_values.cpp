@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "analysis/field/field_numbers.h"
-#include "sim/io/input_text.h"
+#include "sim/material/input_text.h"
 #include "sim/material/csv_table.h"
 #include "sim/material/random.h"
 

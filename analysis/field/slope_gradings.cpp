@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "analysis/results/output_units.h"
-#include "sim/io/input_text.h"
+#include "sim/material/input_text.h"
 
 namespace scree {
 namespace {

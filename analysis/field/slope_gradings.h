@@ -27,7 +27,7 @@ struct SlopeGradings {
 ///                                       straight in log d from its last two points
 ///   diameter_mm, passing_pct            passing curves, a row a point, from 0 to 100
 ///   diameter_mm                         grains, counted by the volume of spheres
-/// in mm, cm or m, and, if there, `chi`. Throws FileError, see sim/io/input_text.h.
+/// in mm, cm or m, and, if there, `chi`. Throws FileError, see sim/material/input_text.h.
 SlopeGradings read_slope_gradings(const std::filesystem::path& file);
 
 }  // namespace scree

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "analysis/image/render_photo.h"
-#include "sim/io/input_text.h"
+#include "sim/material/input_text.h"
 
 namespace scree {
 namespace {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "sim/io/input_text.h"
+#include "sim/material/input_text.h"
 #include "sim/io/text_file.h"
 
 namespace scree {

@@ -5,7 +5,7 @@
 #include <regex>
 #include <string_view>
 
-#include "sim/io/input_text.h"
+#include "sim/material/input_text.h"
 
 namespace scree {
 namespace {

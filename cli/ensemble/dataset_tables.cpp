@@ -10,7 +10,7 @@
 
 #include "analysis/results/output_units.h"
 #include "cli/ensemble/output_scope.h"
-#include "sim/io/input_text.h"
+#include "sim/material/input_text.h"
 #include "sim/scene/scenario_values.h"
 #include "sim/scene/yaml_tree.h"
 

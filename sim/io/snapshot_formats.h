@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "sim/io/input_text.h"
+#include "sim/material/input_text.h"
 #include "sim/io/snapshot_reader.h"
 
 namespace scree {

@@ -44,6 +44,8 @@ class CoarseToFine {
     while (segment_ > 1 && rest(points_[segment_ - 1].diameter) < points_[segment_ - 1].passing) --segment_;
     const auto &a = points_[segment_ - 1], &b = points_[segment_];
     const double slope = (b.passing - a.passing) / std::log(b.diameter / a.diameter);
+    if (slope == 0)
+      return rest(a.diameter) - a.passing < b.passing - rest(b.diameter) ? a.diameter : b.diameter;
     // f(t) = passing(a e^t) - rest(a e^t) rises; Newton kept inside a shrinking bracket.
     double low = 0, high = std::log(b.diameter / a.diameter);
     if (a.passing >= rest(a.diameter)) return a.diameter;

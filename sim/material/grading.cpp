@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "sim/material/input_bytes.h"
+#include "sim/material/input_text.h"
 
 namespace scree {
 
@@ -25,23 +25,34 @@ double passing_between(const Grading::Point& a, const Grading::Point& b, double 
          (b.passing - a.passing) * std::log(diameter / a.diameter) / std::log(b.diameter / a.diameter);
 }
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
+/// The columns of a grading file, and what makes a diameter metres.
+struct Columns {
+  std::size_t diameter, passing;
+  double metres;
+};
 
-/// The number that `text` is, all of it; false when it is none or not finite.
-bool parse_number(std::string_view text, double& value) {
-  text = trimmed(text);
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+Columns columns_of(const std::filesystem::path& file, const DelimitedTable& table) {
+  const auto passing = table.column("passing_pct");
+  for (const auto& [name, metres] :
+       {std::pair("diameter_mm", 1e-3), {"diameter_cm", 1e-2}, {"diameter_m", 1.0}})
+    if (const auto diameter = table.column(name); diameter && passing) return {*diameter, *passing, metres};
+  throw FileError(file, table.header_line(),
+                  "the columns diameter_mm (or diameter_cm, diameter_m) and passing_pct are needed");
 }
 
 }  // namespace
 
 Grading::Grading(std::string name, std::vector<Point> points)
     : name_(std::move(name)), points_(std::move(points)) {
+  // Sieves that nothing passes or all does say nothing but where the curve ends.
+  const auto begins =
+      std::find_if(points_.begin(), points_.end(), [](const Point& p) { return p.passing != 0; });
+  if (begins - points_.begin() > 1) points_.erase(points_.begin(), begins - 1);
+  const auto ends =
+      std::find_if(points_.begin(), points_.end(), [](const Point& p) { return p.passing == 1; });
+  if (ends != points_.end() && ends + 1 != points_.end() &&
+      std::all_of(ends, points_.end(), [](const Point& p) { return p.passing == 1; }))
+    points_.erase(ends + 1, points_.end());
   if (points_.size() < 2) throw std::invalid_argument("a grading needs at least two points");
   for (const Point& point : points_) {
     if (!(std::isfinite(point.diameter) && point.diameter > 0))
@@ -53,9 +64,10 @@ Grading::Grading(std::string name, std::vector<Point> points)
     if (!(points_[i].diameter > points_[i - 1].diameter))
       throw std::invalid_argument(fmt::format("diameters must rise: {} m follows {} m", points_[i].diameter,
                                               points_[i - 1].diameter));
-    if (!(points_[i].passing > points_[i - 1].passing))
-      throw std::invalid_argument(fmt::format("passing must rise: {} at {} m follows {}", points_[i].passing,
-                                              points_[i].diameter, points_[i - 1].passing));
+    if (!(points_[i].passing >= points_[i - 1].passing))
+      throw std::invalid_argument(fmt::format("passing must not fall: {} at {} m follows {}",
+                                              points_[i].passing, points_[i].diameter,
+                                              points_[i - 1].passing));
   }
   if (points_.front().passing != 0)
     throw std::invalid_argument(
@@ -125,45 +137,48 @@ Grading Grading::with_fines(double share, double ratio) const {
 }
 
 Grading read_grading(const std::filesystem::path& file) {
-  const std::string bytes = read_input_text(file, kMostFileBytes);
-  const std::string header = "diameter_mm,passing_pct";
-  std::vector<Grading::Point> points;
-  int number = 0;
-  bool header_seen = false;
-  const auto fail = [&](const std::string& what) { throw FileError(file, number, what); };
-  for (std::size_t at = 0; at < bytes.size();) {
-    const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
-    const std::string_view text = trimmed(std::string_view(bytes).substr(at, end - at));
-    at = end + 1;
-    ++number;
-    if (text.empty() || text.front() == '#') continue;
-    if (!header_seen) {
-      if (text != header) fail(fmt::format("the first line that is no comment must be '{}'", header));
-      header_seen = true;
-      continue;
-    }
-    const auto comma = text.find(',');
-    double diameter_mm = 0, passing_pct = 0;
-    if (comma == std::string_view::npos || !parse_number(text.substr(0, comma), diameter_mm) ||
-        !parse_number(text.substr(comma + 1), passing_pct))
-      fail(fmt::format("'{:.60}' is not two numbers 'diameter_mm,passing_pct'", text));
-    if (diameter_mm <= 0) fail(fmt::format("diameter {} mm must be above 0", diameter_mm));
-    if (diameter_mm < kLeastMm || diameter_mm > kMostMm)
-      fail(fmt::format("diameter {} mm; allowed {} to {} mm", diameter_mm, kLeastMm, kMostMm));
-    if (points.size() == kMostPoints) fail(fmt::format("more than {} points", kMostPoints));
-    if (passing_pct < 0 || passing_pct > 100)
-      fail(fmt::format("passing {} % must be between 0 and 100", passing_pct));
-    if (points.empty() && passing_pct != 0)
-      fail(fmt::format("the first (smallest) diameter must have passing 0, not {}", passing_pct));
-    if (!points.empty() && diameter_mm / 1000 <= points.back().diameter)
-      fail(fmt::format("diameter {} mm must be above the one before", diameter_mm));
-    if (!points.empty() && passing_pct / 100 <= points.back().passing)
-      fail(fmt::format("passing {} % must be above the one before", passing_pct));
-    points.push_back({diameter_mm / 1000, passing_pct / 100});
+  std::error_code none;
+  if (const auto size = std::filesystem::file_size(file, none); !none && size > kMostFileBytes)
+    read_input_bytes(file, kMostFileBytes);  // says so
+  DelimitedTable table(file);
+  const Columns columns = columns_of(file, table);
+  struct Row {
+    int line;
+    double diameter, passing;  // as written
+  };
+  std::vector<Row> rows;
+  while (table.next()) {
+    const auto diameter = table.number(columns.diameter), passing = table.number(columns.passing);
+    if (!diameter || !passing) table.fail("a diameter and what passes it are needed");
+    if (!(*diameter > 0)) table.fail(fmt::format("diameter {} must be above 0", *diameter));
+    if (const double mm = 1000 * columns.metres * *diameter; mm < kLeastMm || mm > kMostMm)
+      table.fail(fmt::format("diameter {} mm; allowed {} to {} mm", mm, kLeastMm, kMostMm));
+    if (*passing < 0 || *passing > 100)
+      table.fail(fmt::format("passing {} % must be between 0 and 100", *passing));
+    if (rows.size() == kMostPoints) table.fail(fmt::format("more than {} points", kMostPoints));
+    rows.push_back({table.line(), *diameter, *passing});
   }
-  ++number;
-  if (points.size() < 2) fail("a grading needs at least two points");
-  if (points.back().passing != 1) fail("the last (largest) diameter must have passing 100");
+  if (rows.size() < 2) throw FileError(file, 0, "a grading needs at least two points");
+  if (rows.front().diameter > rows.back().diameter) std::reverse(rows.begin(), rows.end());  // coarse first
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const auto fail = [&](const std::string& what) { throw FileError(file, rows[k].line, what); };
+    if (rows[k].diameter <= rows[k - 1].diameter)
+      fail(fmt::format("diameter {} stands beside {}: they must rise or fall throughout", rows[k].diameter,
+                       rows[k - 1].diameter));
+    if (rows[k].passing < rows[k - 1].passing)
+      fail(fmt::format("passing {} % is below that of a finer diameter, {} %", rows[k].passing,
+                       rows[k - 1].passing));
+  }
+  if (rows.front().passing != 0)
+    throw FileError(file, rows.front().line,
+                    fmt::format("the smallest diameter must have passing 0, not {}", rows.front().passing));
+  if (rows.back().passing != 100)
+    throw FileError(file, rows.back().line,
+                    fmt::format("the largest diameter must have passing 100, not {}", rows.back().passing));
+  std::vector<Grading::Point> points;
+  for (const Row& row : rows)
+    points.push_back(
+        {columns.metres == 1e-3 ? row.diameter / 1000 : row.diameter * columns.metres, row.passing / 100});
   return Grading(file.stem().string(), std::move(points));
 }
 

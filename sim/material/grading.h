@@ -15,8 +15,9 @@ class Grading {
     double passing;   ///< share of mass, 0 to 1
   };
 
-  /// Points with strictly rising diameters and rising passing, from 0 to 1; throws std::invalid_argument
-  /// otherwise.
+  /// Points with strictly rising diameters and passing that does not fall, from 0 to 1; throws
+  /// std::invalid_argument otherwise. Where passing stays the rock has a gap. Further points of passing 0 or
+  /// 1 at either end are left out.
   Grading(std::string name, std::vector<Point> points);
 
   /// Passing share at a diameter (m).
@@ -43,9 +44,9 @@ class Grading {
   std::vector<Point> points_;
 };
 
-/// Reads a grading file: CSV, `#` comment lines (source, how it was rebuilt), header
-/// `diameter_mm,passing_pct`, at most 10,000 points between 1 micrometre and 1 km. Throws FileError: what is
-/// wrong, what is allowed.
+/// Reads a grading file: a table (input_text.h) with the columns `diameter_mm` (or `_cm`, `_m`) and
+/// `passing_pct`, fine or coarse first, `#` comment lines (source, how it was rebuilt), at most 10,000 points
+/// between 1 micrometre and 1 km. Throws FileError: what is wrong, what is allowed.
 Grading read_grading(const std::filesystem::path& file);
 
 /// Diameters (m), largest first, of spheres that together weigh `mass` (kg) within 0.5 % and whose passing

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "sim/io/input_text.h"
+#include "sim/material/input_text.h"
 
 namespace scree {
 namespace {

@@ -9,7 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "analysis/image/scale_target.h"
-#include "sim/io/input_text.h"
+#include "sim/material/input_text.h"
 #include "tests/cli/call.h"
 
 namespace scree {

@@ -8,7 +8,7 @@
 
 #include "analysis/image/image_bias.h"
 #include "analysis/image/render_photo.h"
-#include "sim/io/input_text.h"
+#include "sim/material/input_text.h"
 #include "sim/material/random.h"
 
 namespace scree {

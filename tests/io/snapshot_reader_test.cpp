@@ -12,7 +12,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "sim/io/input_text.h"
+#include "sim/material/input_text.h"
 #include "sim/io/trajectory.h"
 
 namespace scree {

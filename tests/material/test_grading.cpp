@@ -69,7 +69,7 @@ TEST(Grading, RefusesWhatIsNoCurve) {
   using Points = std::vector<Grading::Point>;
   for (const Points& points :
        {Points{}, Points{{0.1, 1}}, Points{{0.1, 0}, {0.1, 1}},
-        Points{{0.1, 0}, {0.2, 0.5}, {0.3, 0.5}, {0.4, 1}}, Points{{0.1, 0.1}, {0.2, 1}},
+        Points{{0.1, 0}, {0.2, 0.5}, {0.3, 0.4}, {0.4, 1}}, Points{{0.1, 0.1}, {0.2, 1}},
         Points{{0.1, 0}, {0.2, 0.9}}, Points{{-0.1, 0}, {0.2, 1}}, Points{{std::nan(""), 0}, {0.2, 1}},
         Points{{0.1, 0}, {0.2, std::nan("")}, {0.3, 1}}})
     EXPECT_THROW(Grading("bad", points), std::invalid_argument);
@@ -82,15 +82,17 @@ TEST(GradingFile, SaysFileLineAndWhatIsWrong) {
       {"", ": the file is empty"},
       {"d,p\n", ":1: "},
       {"# c\ndiameter_mm,passing_pct\n8,0\n9;10\n", ":4: "},
+      {"passing_pct,size\n0,8\n100,9\n", ":1: "},
       {"diameter_mm,passing_pct\n8,0\n9,ten\n", ":3: "},
-      {"diameter_mm,passing_pct\n8,0\n9,10,\n", ":3: "},
+      {"diameter_mm,passing_pct\n8,0\n9,10,7\n", ":3: "},
       {"diameter_mm,passing_pct\n8,1\n9,100\n", ":2: "},
-      {"diameter_mm,passing_pct\n8,0\n7,100\n", ":3: "},
-      {"diameter_mm,passing_pct\n8,0\n9,50\n10,50\n11,100\n", ":4: "},
+      {"diameter_mm,passing_pct\n8,0\n7,50\n9,100\n", ":3: "},
+      {"diameter_mm,passing_pct\n9,100\n7,50\n8,0\n", ":3: "},
+      {"diameter_mm,passing_pct\n8,0\n9,50\n10,40\n11,100\n", ":4: "},
       {"diameter_mm,passing_pct\n8,0\n9,101\n", ":3: "},
       {"diameter_mm,passing_pct\n8,0\nnan,100\n", ":3: "},
       {"diameter_mm,passing_pct\n-8,0\n9,100\n", ":2: "},
-      {"diameter_mm,passing_pct\n8,0\n9,90\n", ":4: "},
+      {"diameter_mm,passing_pct\n8,0\n9,90\n", ":3: "},
   };
   for (const auto& [text, place] : bad) {
     std::ofstream(file) << text;
@@ -103,6 +105,33 @@ TEST(GradingFile, SaysFileLineAndWhatIsWrong) {
   }
   std::filesystem::remove(file);
   EXPECT_THROW(read_grading(file), std::runtime_error);
+}
+
+// As laboratories write them: coarse first, several sieves that all passes, semicolons and decimal commas.
+TEST(GradingFile, ReadsTheTableOfALaboratory) {
+  const auto file = std::filesystem::path(testing::TempDir()) / "scree_lab_grading.csv";
+  std::ofstream(file) << "Diameter_cm;Passing_pct;sieve\n20;100;a\n10;100,0;b\n5;50,5;c\n0,8;0;d\n0,4;0;e\n";
+  const Grading g = read_grading(file);
+  EXPECT_DOUBLE_EQ(g.min_diameter(), 0.008);
+  EXPECT_DOUBLE_EQ(g.max_diameter(), 0.1);
+  EXPECT_DOUBLE_EQ(g.passing(0.05), 0.505);
+  std::filesystem::remove(file);
+}
+
+// Where nothing lies between two sizes passing stays, and D_x jumps.
+TEST(Grading, AGapHasNoRock) {
+  const Grading g("gap", {{0.01, 0}, {0.02, 0.4}, {0.1, 0.4}, {0.2, 1}});
+  EXPECT_DOUBLE_EQ(g.passing(0.05), 0.4);
+  EXPECT_LE(g.diameter(0.39), 0.02);
+  EXPECT_GE(g.diameter(0.41), 0.1);
+  const std::vector<double> spheres = generate_diameters(g, 2000, 2700, 1, 0);
+  double finer = 0, all = 0;
+  for (const double d : spheres) {
+    EXPECT_TRUE(d <= 0.02 * (1 + 1e-12) || d >= 0.1 * (1 - 1e-12)) << d;
+    all += d * d * d;
+    if (d < 0.05) finer += d * d * d;
+  }
+  EXPECT_NEAR(finer / all, 0.4, 0.02);
 }
 
 TEST(GradingFile, ReadsCommentsAndWindowsLineEnds) {

@@ -1,4 +1,4 @@
-#include "sim/io/input_text.h"
+#include "sim/material/input_text.h"
 
 #include <fmt/format.h>
 
