@@ -16,7 +16,7 @@ struct RunOptions {
   std::vector<std::string> overrides;
   int seeds = 0;                 ///< 0: those of the scenario
   int threads = 0;               ///< 0: as many as cores
-  std::filesystem::path out;     ///< empty: runs/NAME
+  std::filesystem::path out;     ///< empty: a free runs/NAME
   bool force = false;            ///< write into a folder that is not empty
   bool summary_only = false;     ///< no report, no pictures
   std::filesystem::path resume;  ///< run folder to go on with; the others but threads are those it began with
@@ -50,7 +50,7 @@ struct SweepOptions {
 struct CalibrateOptions {
   std::filesystem::path file;
   EnsembleOptions ensemble;
-  std::filesystem::path out;  ///< empty: runs/NAME
+  std::filesystem::path out;  ///< empty: a free runs/NAME
   bool force = false;         ///< write into a folder that is not empty
 };
 
