@@ -342,7 +342,7 @@ Command effects_command(CLI::App& all) {
   app->footer(
       "\nExamples:\n  scree effects\n  scree effects cohesion\n"
       "  scree run scenarios/repose_lab_coarse.yaml --set effects.cohesion.bond_number=0.5\n");
-  return {app, [options] { return run_effects(*options); }};
+  return {app, [options] { return run_effects(*options); }, false};
 }
 
 Command image_command(CLI::App& all) {
@@ -457,7 +457,7 @@ Command render_command(CLI::App& all) {
 Command schema_command(CLI::App& all) {
   CLI::App* app = all.add_subcommand("schema", "Print the JSON Schema of scenario files");
   app->footer("\nExample:\n  scree schema > scenario.schema.json\n");
-  return {app, run_schema};
+  return {app, run_schema, false};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 struct Command {
   CLI::App* app;
   std::function<int()> run;  ///< with the options that were parsed; returns the exit code
+  bool reads_assets = true;
 };
 
 /// Adds all subcommands; help lists them in this order.

@@ -22,7 +22,7 @@ int EnsembleOptions::cores() const {
 
 std::unique_ptr<scree::ResultsStore> open_store(const fs::path& named, StoreUse use) {
   fs::path file = named.empty() ? fs::path("runs") / "store.sqlite" : named;
-  if (use == StoreUse::list && !fs::exists(file)) {
+  if ((use == StoreUse::plan || (use == StoreUse::list && named.empty())) && !fs::exists(file)) {
     fmt::print(stderr, "note: {} is not there: nothing has been run yet\n", file.string());
     return std::make_unique<scree::ResultsStore>(":memory:");
   }

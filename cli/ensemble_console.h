@@ -9,9 +9,9 @@
 #include "cli/commands.h"
 #include "cli/ensemble/ensemble.h"
 
-/// What a store is opened for. To look at it needs no right to write and makes none; where there is none, a
-/// list is that of an empty one.
-enum class StoreUse { change, look, list };
+/// What a store is opened for. To look at one needs no right to write and makes none. What is to come (plan)
+/// is that of an empty store where there is none; what is there (list), where none was named.
+enum class StoreUse { change, look, list, plan };
 
 /// The store named, or runs/store.sqlite; none, with a message, if it cannot be opened.
 std::unique_ptr<scree::ResultsStore> open_store(const std::filesystem::path& named, StoreUse use);

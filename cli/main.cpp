@@ -45,15 +45,17 @@ Examples:
 
 }  // namespace
 
-std::filesystem::path asset_dir() {
+namespace fs = std::filesystem;
+
+fs::path asset_dir() {
   if (const char* given = std::getenv("SCREE_ASSETS"))
-    return (std::filesystem::path(given) / "").lexically_normal().parent_path();
+    return (fs::path(given) / "").lexically_normal().parent_path();
   // Beside the program, in a folder above it, or where it was built.
   std::error_code error;
-  std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
   for (; !error && folder.has_relative_path(); folder = folder.parent_path())
-    if (std::filesystem::is_directory(folder / "assets" / "gradings")) return folder / "assets";
-  return std::filesystem::path(SCREE_SOURCE_DIR) / "assets";
+    if (fs::is_directory(folder / "assets" / "gradings", error)) return folder / "assets";
+  return fs::path(SCREE_SOURCE_DIR) / "assets";
 }
 
 int main(int argc, char** argv) {
@@ -85,16 +87,18 @@ int main(int argc, char** argv) {
   action.sa_handler = on_interrupt;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  if (!std::filesystem::is_directory(asset_dir() / "gradings")) {
-    fmt::print(stderr,
-               "scree: {}: has no gradings, meshes and reference values; set SCREE_ASSETS to the folder "
-               "`assets` of the project\n",
-               asset_dir().string());
-    return kBadInput;
-  }
   try {
-    for (const Command& command : commands)
-      if (*command.app) return command.run();
+    for (const Command& command : commands) {
+      if (!*command.app) continue;
+      if (std::error_code none; command.reads_assets && !fs::is_directory(asset_dir() / "gradings", none)) {
+        fmt::print(stderr,
+                   "scree: {}: has no gradings, meshes and reference values; set SCREE_ASSETS to the folder "
+                   "`assets` of the project\n",
+                   scree::one_line(asset_dir().string()));
+        return kBadInput;
+      }
+      return command.run();
+    }
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "scree: the memory of this machine does not suffice\n");
     return kFailed;

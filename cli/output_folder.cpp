@@ -18,7 +18,8 @@ bool may_fill(const fs::path& folder, bool force) {
     return false;
   }
   std::error_code none;
-  fs::path there = fs::absolute(folder).lexically_normal();
+  fs::path there = fs::weakly_canonical(fs::absolute(folder), none);
+  if (none) there = fs::absolute(folder);
   while (!fs::exists(there, none) && there.has_relative_path()) there = there.parent_path();
   if (fs::is_directory(there, none) && access(there.c_str(), W_OK | X_OK) == 0) return true;
   fmt::print(stderr, "{}: cannot be written: {} {}; choose another --out\n", folder.string(), there.string(),
@@ -29,9 +30,13 @@ bool may_fill(const fs::path& folder, bool force) {
 bool may_write(const fs::path& file) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   std::error_code none;
-  if (fs::is_directory(folder, none) && !fs::is_directory(file, none)) return true;
+  const bool there = fs::is_directory(folder, none), is_folder = fs::is_directory(file, none);
+  const bool may = access((fs::exists(file, none) ? file : folder).c_str(), W_OK) == 0;
+  if (there && !is_folder && may) return true;
   fmt::print(stderr, "{}: cannot be written: {}\n", file.string(),
-             fs::is_directory(file, none) ? "it is a folder" : "its folder is not there");
+             is_folder ? "it is a folder"
+             : !there  ? "its folder is not there"
+                       : "no permission");
   return false;
 }
 

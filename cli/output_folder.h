@@ -10,7 +10,7 @@ std::filesystem::path free_run_folder(const std::string& name);
 /// message if not. What is refused here is not refused after hours of work.
 bool may_fill(const std::filesystem::path& folder, bool force);
 
-/// Whether the folder of a file is there, and the file is none; a message if not.
+/// Whether the folder of a file is there, the file is no folder, and it may be written; a message if not.
 bool may_write(const std::filesystem::path& file);
 
 /// Makes the folder. False, with a message, if it holds something (unless forced) or cannot be written.

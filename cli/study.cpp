@@ -47,7 +47,7 @@ int run_study(const StudyOptions& options) {
   }
   if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
   const std::vector<scree::RunRequest> requests = scree::requests_of(study.sweep, asset_dir());
-  const auto store = open_store(options.ensemble.store, options.list ? StoreUse::look : StoreUse::change);
+  const auto store = open_store(options.ensemble.store, options.list ? StoreUse::list : StoreUse::change);
   if (!store) return kBadInput;
   scree::EnsembleProgress progress;
   if (!options.list) progress = run_with_progress(requests, *store, options.ensemble);

@@ -19,11 +19,7 @@ Grading curve_of(const std::vector<EnvelopePoint>& envelope, double EnvelopePoin
   std::vector<Grading::Point> points;
   for (const EnvelopePoint& at : envelope) {
     const double passing = at.*share;
-    // Where a curve is flat at its ends, it begins at the last 0 and ends at the first 1.
-    if (!points.empty() && passing <= points.back().passing) {
-      if (passing == 0) points.back().diameter = at.diameter;
-      continue;
-    }
+    if (!points.empty() && passing < points.back().passing) continue;  // by its rounding
     points.push_back({at.diameter, passing});
   }
   return Grading(name, std::move(points));
@@ -81,10 +77,6 @@ Grading with_sieved_fines(const Grading& curve, const Grading& sieved, double li
   const double share = curve.passing(limit), of_sample = sieved.passing(limit);
   if (!(of_sample > 0))
     throw std::invalid_argument(fmt::format("the sieved sample has nothing below {} m", limit));
-  if (limit > sieved.points().back().diameter)
-    throw std::invalid_argument(fmt::format(
-        "the sieved sample ends at {:g} m, below the limit of {:g} m: nothing says what lies between",
-        sieved.points().back().diameter, limit));
   if (share >= 1) throw std::invalid_argument(fmt::format("a curve has nothing above {} m", limit));
   if (share == 0) return curve;
   std::vector<Grading::Point> points;
@@ -92,7 +84,7 @@ Grading with_sieved_fines(const Grading& curve, const Grading& sieved, double li
     if (point.diameter < limit) points.push_back({point.diameter, share * point.passing / of_sample});
   points.push_back({limit, share});
   for (const Grading::Point& point : curve.points())
-    if (point.diameter > limit && point.passing > share) points.push_back(point);
+    if (point.diameter > limit) points.push_back(point);
   return Grading(curve.name() + ", with fines", std::move(points));
 }
 

@@ -201,8 +201,9 @@ class Reader {
     if (row.chi) picture.given_chi[k] = *row.chi;
     try {
       if (!row.grains.empty()) row.points = curve_of_grains(std::move(row.grains));
-      std::sort(row.points.begin(), row.points.end(),
-                [](const Grading::Point& a, const Grading::Point& b) { return a.passing < b.passing; });
+      std::sort(row.points.begin(), row.points.end(), [](const Grading::Point& a, const Grading::Point& b) {
+        return std::pair(a.passing, a.diameter) < std::pair(b.passing, b.diameter);
+      });
       if (!layout_.diameter) close_ends(row.points);
       picture.curves[k] = Grading(fmt::format("image {} section {}", picture.name, section), row.points);
     } catch (const std::invalid_argument& error) {

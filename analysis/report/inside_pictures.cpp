@@ -121,6 +121,13 @@ Picture draw_layers(const std::vector<Grain>& pile, const std::vector<Grain>& fi
           "(yellow)."};
 }
 
+bool shows_rock(const Inside& inside) {
+  for (int k = 0; k < inside.nz; ++k)
+    for (int i = 0; i < inside.nx; ++i)
+      if (has_rock(inside, inside.at(i, k))) return true;
+  return false;
+}
+
 Picture draw_inside(const Inside& inside, const std::filesystem::path& file) {
   const auto chi = [](const InsideCell& cell) { return cell.chi; };
   const auto porosity = [](const InsideCell& cell) { return cell.porosity; };

@@ -11,8 +11,11 @@ Picture draw_layers(const std::vector<Grain>& pile, const std::vector<Grain>& fi
                     const VerticalSection& section, const std::filesystem::path& file);
 
 /// Maps of segregation degree, porosity and conductivity (Kozeny-Carman, over the original's) of the cells,
-/// below each other with the bench; cells without a number are grey. Throws std::invalid_argument for an
-/// Inside without cells, std::runtime_error as run_gnuplot.
+/// below each other with the bench; cells without a number are grey. Throws std::invalid_argument unless
+/// shows_rock(), std::runtime_error as run_gnuplot.
 Picture draw_inside(const Inside& inside, const std::filesystem::path& file);
+
+/// A cell at least holds rock enough to be drawn.
+bool shows_rock(const Inside& inside);
 
 }  // namespace scree

@@ -95,10 +95,9 @@ std::vector<Picture> draw_inside_of(const RunResult& result, const std::filesyst
   if (result.seeds.empty() || !result.seeds.front().inside) return pictures;
   const SeedResult& seed = result.seeds.front();
   const VerticalSection& section = seed.inside->section;
-  if (!seed.inside->cells.empty() && reaches(seed.final_state, section)) {
+  if (reaches(seed.final_state, section))
     pictures.push_back(draw_layers(seed.final_state.grains, seed.fixed, section, folder / "layers.png"));
-    pictures.push_back(draw_inside(*seed.inside, folder / "inside.png"));
-  }
+  if (shows_rock(*seed.inside)) pictures.push_back(draw_inside(*seed.inside, folder / "inside.png"));
   if (seed.flow && seed.flow->liveliest() && reaches(*seed.flow->liveliest(), section))
     pictures.push_back(draw_velocity(*seed.flow->liveliest(), seed.fixed, section, folder / "velocity.png"));
   return pictures;

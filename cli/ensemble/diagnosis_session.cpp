@@ -465,6 +465,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
         "no effect can be named; measure more",
         data_.measured.values.size(), space_.base.size()));
   learn_from(design_, run, outcome);
+  outcome.nominal = nominal_of_design();
   LearntModel model = learn();
   Diagnosis d = diagnose(space_, data_.measured, model, {}, Pairs::where_none_explains, nullptr, threads_);
   TriedModels tried(space_, d, model, [&](const ModelPoint& at) { return simulate(at, run, outcome); });
@@ -508,7 +509,6 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     if (const Judgement* j = named_first(d)) outcome.settled = outcome.settled && tried.bears_out(*j);
   }
   say_what_stands(d, tried, outcome);
-  outcome.nominal = nominal_of_design();
   outcome.nominal.gap = simulated_gap(d, model, outcome.nominal.mean, std::max(outcome.nominal.runs, 1));
   if (const SimulatedModel* calibrated = tried.last(d.calibration)) {
     outcome.calibrated = *calibrated;

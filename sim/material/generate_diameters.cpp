@@ -5,10 +5,12 @@
 //
 //     d = D(1 - (m + u v(d)) / M),   v(d) = density pi d^3 / 6,   u uniform in [0, 1)
 //
-// which has one solution, as the left side rises with d and the right side falls. Each error is carried to
-// the next sphere. At any diameter the mass drawn then differs from the curve's by less than the mass of one
-// sphere of about that diameter. Where that is more than the bound (the coarse end of a small load), whole
-// draws are repeated, and the first within the bound, or else the nearest to it, is taken.
+// which has one solution, as the left side rises with d and the right side falls; in a gap of the curve,
+// where it may lie, an end of the gap is taken: the coarse one while half a sphere of it is left above the
+// gap. Each error is carried to the next sphere. At any diameter the mass drawn then differs from the curve's
+// by less than the mass of one sphere of about that diameter. Where that is more than the bound (the coarse
+// end of a small load), whole draws are repeated, and the first within the bound, or else the nearest to it,
+// is taken.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,16 +38,23 @@ class CoarseToFine {
   explicit CoarseToFine(const Grading& grading)
       : points_(grading.points()), segment_(grading.points().size() - 1) {}
 
-  /// Root d of d = D(1 - (mass_share + scale d^3)).
-  double solve(double mass_share, double scale) {
+  /// Root d of d = D(1 - (mass_share + scale d^3)), scale below `sphere`: sphere d^3 is the share of the mass
+  /// that a sphere has.
+  double solve(double mass_share, double scale, double sphere) {
     const auto rest = [&](double d) { return 1 - mass_share - scale * d * d * d; };
     while (segment_ + 1 < points_.size() && rest(points_[segment_].diameter) > points_[segment_].passing)
       ++segment_;
     while (segment_ > 1 && rest(points_[segment_ - 1].diameter) < points_[segment_ - 1].passing) --segment_;
     const auto &a = points_[segment_ - 1], &b = points_[segment_];
+    // A gap is crossed where less than half a sphere of its coarse end is left above it, whatever u.
+    const auto is_left = [&](const Grading::Point& coarse) {
+      return 1 - coarse.passing - mass_share >=
+             0.5 * sphere * coarse.diameter * coarse.diameter * coarse.diameter;
+    };
+    if (segment_ > 1 && a.passing == points_[segment_ - 2].passing && !is_left(a))
+      return points_[segment_ - 2].diameter;
+    if (a.passing == b.passing) return is_left(b) ? b.diameter : a.diameter;
     const double slope = (b.passing - a.passing) / std::log(b.diameter / a.diameter);
-    if (slope == 0)
-      return rest(a.diameter) - a.passing < b.passing - rest(b.diameter) ? a.diameter : b.diameter;
     // f(t) = passing(a e^t) - rest(a e^t) rises; Newton kept inside a shrinking bracket.
     double low = 0, high = std::log(b.diameter / a.diameter);
     if (a.passing >= rest(a.diameter)) return a.diameter;
@@ -75,7 +84,7 @@ std::vector<double> draw(const Grading& grading, double mass, double sphere_fact
   double drawn = 0;
   // A last sphere that would leave more mass over than without it is not drawn.
   while (drawn + 0.5 * finest < mass) {
-    const double d = curve.solve(drawn / mass, random.uniform() * sphere_factor / mass);
+    const double d = curve.solve(drawn / mass, random.uniform() * sphere_factor / mass, sphere_factor / mass);
     diameters.push_back(d);
     drawn += sphere_factor * d * d * d;
   }

@@ -33,9 +33,14 @@ struct Columns {
 
 Columns columns_of(const std::filesystem::path& file, const DelimitedTable& table) {
   const auto passing = table.column("passing_pct");
+  std::vector<Columns> found;
   for (const auto& [name, metres] :
        {std::pair("diameter_mm", 1e-3), {"diameter_cm", 1e-2}, {"diameter_m", 1.0}})
-    if (const auto diameter = table.column(name); diameter && passing) return {*diameter, *passing, metres};
+    if (const auto diameter = table.column(name); diameter && passing)
+      found.push_back({*diameter, *passing, metres});
+  if (found.size() == 1) return found.front();
+  if (found.size() > 1)
+    throw FileError(file, table.header_line(), "two columns are diameters; one is wanted");
   throw FileError(file, table.header_line(),
                   "the columns diameter_mm (or diameter_cm, diameter_m) and passing_pct are needed");
 }
@@ -44,15 +49,6 @@ Columns columns_of(const std::filesystem::path& file, const DelimitedTable& tabl
 
 Grading::Grading(std::string name, std::vector<Point> points)
     : name_(std::move(name)), points_(std::move(points)) {
-  // Sieves that nothing passes or all does say nothing but where the curve ends.
-  const auto begins =
-      std::find_if(points_.begin(), points_.end(), [](const Point& p) { return p.passing != 0; });
-  if (begins - points_.begin() > 1) points_.erase(points_.begin(), begins - 1);
-  const auto ends =
-      std::find_if(points_.begin(), points_.end(), [](const Point& p) { return p.passing == 1; });
-  if (ends != points_.end() && ends + 1 != points_.end() &&
-      std::all_of(ends, points_.end(), [](const Point& p) { return p.passing == 1; }))
-    points_.erase(ends + 1, points_.end());
   if (points_.size() < 2) throw std::invalid_argument("a grading needs at least two points");
   for (const Point& point : points_) {
     if (!(std::isfinite(point.diameter) && point.diameter > 0))
@@ -75,6 +71,15 @@ Grading::Grading(std::string name, std::vector<Point> points)
   if (points_.back().passing != 1)
     throw std::invalid_argument(
         fmt::format("the largest diameter must have passing 1, not {}", points_.back().passing));
+  // Sieves that nothing passes or all does say nothing but where the curve ends.
+  const auto begins =
+      std::find_if(points_.begin(), points_.end(), [](const Point& p) { return p.passing != 0; });
+  if (begins - points_.begin() > 1) points_.erase(points_.begin(), begins - 1);
+  const auto ends =
+      std::find_if(points_.begin(), points_.end(), [](const Point& p) { return p.passing == 1; });
+  if (ends != points_.end() && ends + 1 != points_.end() &&
+      std::all_of(ends, points_.end(), [](const Point& p) { return p.passing == 1; }))
+    points_.erase(ends + 1, points_.end());
 }
 
 double Grading::passing(double diameter) const {
@@ -144,7 +149,7 @@ Grading read_grading(const std::filesystem::path& file) {
   const Columns columns = columns_of(file, table);
   struct Row {
     int line;
-    double diameter, passing;  // as written
+    double diameter, passing;  // m; %
   };
   std::vector<Row> rows;
   while (table.next()) {
@@ -156,15 +161,16 @@ Grading read_grading(const std::filesystem::path& file) {
     if (*passing < 0 || *passing > 100)
       table.fail(fmt::format("passing {} % must be between 0 and 100", *passing));
     if (rows.size() == kMostPoints) table.fail(fmt::format("more than {} points", kMostPoints));
-    rows.push_back({table.line(), *diameter, *passing});
+    rows.push_back(
+        {table.line(), columns.metres == 1e-3 ? *diameter / 1000 : *diameter * columns.metres, *passing});
   }
   if (rows.size() < 2) throw FileError(file, 0, "a grading needs at least two points");
   if (rows.front().diameter > rows.back().diameter) std::reverse(rows.begin(), rows.end());  // coarse first
   for (std::size_t k = 1; k < rows.size(); ++k) {
     const auto fail = [&](const std::string& what) { throw FileError(file, rows[k].line, what); };
     if (rows[k].diameter <= rows[k - 1].diameter)
-      fail(fmt::format("diameter {} stands beside {}: they must rise or fall throughout", rows[k].diameter,
-                       rows[k - 1].diameter));
+      fail(fmt::format("diameter {:g} m stands beside {:g} m: they must rise or fall throughout",
+                       rows[k].diameter, rows[k - 1].diameter));
     if (rows[k].passing < rows[k - 1].passing)
       fail(fmt::format("passing {} % is below that of a finer diameter, {} %", rows[k].passing,
                        rows[k - 1].passing));
@@ -176,9 +182,7 @@ Grading read_grading(const std::filesystem::path& file) {
     throw FileError(file, rows.back().line,
                     fmt::format("the largest diameter must have passing 100, not {}", rows.back().passing));
   std::vector<Grading::Point> points;
-  for (const Row& row : rows)
-    points.push_back(
-        {columns.metres == 1e-3 ? row.diameter / 1000 : row.diameter * columns.metres, row.passing / 100});
+  for (const Row& row : rows) points.push_back({row.diameter, row.passing / 100});
   return Grading(file.stem().string(), std::move(points));
 }
 

@@ -52,10 +52,11 @@ Grading read_grading(const std::filesystem::path& file);
 /// Diameters (m), largest first, of spheres that together weigh `mass` (kg) within 0.5 % and whose passing
 /// curve is within 2 points of the grading at every point of it, for any seed, as long as the mass allows it.
 /// What is achievable: the error at a diameter is always below the share of the mass that one sphere of about
-/// that diameter has, so the bounds hold for certain from 50 spheres of the largest size but one point (QB0:
-/// 225 t), and by choice among draws from about a third of that. Below, the nearest of 200 draws is taken.
-/// `seed` and `dump` name the random stream. Throws std::invalid_argument when mass or density is not
-/// positive, the mass is less than the smallest sphere, or more than 20 million spheres would be needed.
+/// that diameter (in a gap: of its coarse end) has, so the bounds hold for certain from 50 spheres of the
+/// largest size but one point (QB0: 225 t), and by choice among draws from about a third of that. Below, the
+/// nearest of 200 draws is taken. `seed` and `dump` name the random stream. Throws std::invalid_argument when
+/// mass or density is not positive, the mass is less than the smallest sphere, or more than 20 million
+/// spheres would be needed.
 std::vector<double> generate_diameters(const Grading& grading, double mass, double density,
                                        std::uint64_t seed, std::uint64_t dump);
 

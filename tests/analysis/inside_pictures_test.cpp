@@ -58,6 +58,13 @@ TEST_F(InsidePictures, Maps) {
   expect_png(draw_inside(analyse_inside(pile_, {}, pile_, section_, none), folder_ / "grey.png"));
 }
 
+// A few grains lie in the section and fill no cell: a run with them has a report all the same.
+TEST_F(InsidePictures, AThinPileHasNoMaps) {
+  EXPECT_TRUE(shows_rock(analyse_inside(pile_, {}, pile_, section_)));
+  for (Grain& grain : pile_) grain.diameter *= 0.1;
+  EXPECT_FALSE(shows_rock(analyse_inside(pile_, {}, pile_, section_)));
+}
+
 TEST_F(InsidePictures, VelocitiesOfFlowAndOfRest) {
   expect_png(draw_velocity({3, pile_}, fixed_, section_, folder_ / "rest.png"));
   for (Grain& grain : pile_) grain.velocity = Vec3(grain.position.z(), 0, -grain.position.z());

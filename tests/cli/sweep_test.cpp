@@ -225,21 +225,13 @@ TEST_F(SweepCli, OutputsOfSectionsThatAreNotCutAreRefusedBeforeSimulations) {
   EXPECT_FALSE(fs::exists(in_folder("store.sqlite")));
 }
 
-TEST_F(SweepCli, ListsThePointsBeforeAnythingWasRun) {
-  const Called called =
-      call("sweep " + in_folder("sweep.yaml") + " --list --store " + in_folder("none.sqlite"));
-  EXPECT_EQ(called.code, 0) << called.text;
-  EXPECT_THAT(called.text, testing::HasSubstr("none.sqlite is not there: nothing has been run yet"));
-  EXPECT_THAT(called.text, testing::HasSubstr("0/"));
-  EXPECT_FALSE(fs::exists(in_folder("none.sqlite")));
-}
-
 TEST_F(SweepCli, WrongInputIsOneLineAndExitCodeTwo) {
   const std::string store = " --store " + in_folder("store.sqlite");
   write("bad.yaml", head + "design: {type: cube}\n");
   write("text.sqlite", "this is a text file that is long enough for the library to look at it as a database");
   for (const std::string& arguments :
        {"sweep " + in_folder("missing.yaml") + store, "sweep " + in_folder("bad.yaml") + store,
+        "sweep " + in_folder("sweep.yaml") + " --list --store " + in_folder("none.sqlite"),
         "sweep " + in_folder("sweep.yaml") + " --store " + in_folder("text.sqlite"),
         "calibrate " + in_folder("sweep.yaml") + store + " --out " + in_folder("x"),
         "predict " + in_folder("sweep.yaml") + " --store " + in_folder("none.sqlite") + " material.mu=0.2"}) {

@@ -52,6 +52,11 @@ TEST(SievedFines, KeepTheShareBelowTheLimitAndTakeTheSampleItsShape) {
   EXPECT_NEAR(with_sieved_fines(seen, sample, 0.1 + 1e-9).min_diameter(), 0.001, 1e-12);
   const Grading lower = with_sieved_fines(Grading("low", {{0.001, 0}, {0.1, 0.3}, {1, 1}}), sample, 0.1);
   EXPECT_NEAR(lower.passing(0.01), 0.3 * 0.2 / 0.6, 1e-12);
+  // A limit in a gap of the curve leaves what lies above the gap; one above the sample leaves a gap.
+  const Grading gap("gap", {{0.01, 0}, {0.02, 0.4}, {0.1, 0.4}, {0.2, 1}});
+  EXPECT_NEAR(with_sieved_fines(gap, sample, 0.05).diameter(0.5), gap.diameter(0.5), 1e-12);
+  const Grading above = with_sieved_fines(seen, Grading("s", {{0.01, 0}, {0.1, 1}}), 0.25);
+  EXPECT_NEAR(above.passing(0.1), above.passing(0.25), 1e-12);
   // Nothing below the limit: nothing to share out.
   EXPECT_EQ(with_sieved_fines(curve(0.3, 1), sample, 0.25).points().size(), 2u);
   EXPECT_THROW(with_sieved_fines(seen, curve(0.3, 1), 0.25), std::invalid_argument);

@@ -64,6 +64,18 @@ TEST_F(SlopeGradingsTable, PassingCurves) {
   EXPECT_EQ(gradings.half_digit, 0);
 }
 
+// Sieves that nothing or all passes, fine or coarse first.
+TEST_F(SlopeGradingsTable, TheOrderOfSievesIsOfNoWeight) {
+  const std::string head = "image,section,diameter_mm,passing_pct\n";
+  const SlopeGradings fine = read(head + "a,1,10,0\na,1,20,0\na,1,100,50\na,1,200,100\na,1,400,100\n"),
+                      coarse = read(head + "a,1,400,100\na,1,200,100\na,1,100,50\na,1,20,0\na,1,10,0\n");
+  for (const SlopeGradings& gradings : {fine, coarse}) {
+    const Grading& curve = *gradings.pictures[0].curves[1];
+    EXPECT_DOUBLE_EQ(curve.min_diameter(), 0.02);
+    EXPECT_DOUBLE_EQ(curve.max_diameter(), 0.2);
+  }
+}
+
 TEST_F(SlopeGradingsTable, GrainsCountByTheirVolume) {
   // 8 grains of 1 and one of 2: half of the volume each.
   std::string text = "image,section,diameter_m\n1,1,2\n";
