@@ -225,6 +225,14 @@ TEST_F(SweepCli, OutputsOfSectionsThatAreNotCutAreRefusedBeforeSimulations) {
   EXPECT_FALSE(fs::exists(in_folder("store.sqlite")));
 }
 
+// Where a caller ignores its children the system keeps to itself how they ended.
+TEST_F(SweepCli, EndsWhereTheCallerIgnoresItsChildren) {
+  const Called result = called("timeout 100 bash -c \"trap '' CHLD; exec " SCREE_BINARY " sweep " +
+                               sweep_of_one_run("0.5") + " --store " + in_folder("s.sqlite") + "\"");
+  EXPECT_EQ(result.code, 0) << result.text;
+  EXPECT_THAT(result.text, HasSubstr("1 runs done here"));
+}
+
 TEST_F(SweepCli, WrongInputIsOneLineAndExitCodeTwo) {
   const std::string store = " --store " + in_folder("store.sqlite");
   write("bad.yaml", head + "design: {type: cube}\n");
