@@ -74,6 +74,13 @@ TEST_F(DiagnosisOf, AMisfitThatIsNoNumberIsNotTakenForNone) {
   EXPECT_THROW(diagnose(world.space, measured, model), std::runtime_error);
 }
 
+TEST_F(DiagnosisOf, ACovarianceThatIsNoneIsRefused) {
+  Measurements measured = world.measure(SyntheticWorld::point(0.5, -0.6), 5, 1);
+  for (auto& value : measured.values) value.std.reset();  // what is given counts
+  measured.covariance(0, 0) = -1;
+  EXPECT_THROW(diagnose(world.space, measured, model), std::runtime_error);
+}
+
 TEST_F(DiagnosisOf, NominalDataSaysThatNothingIsMissing) {
   int alarms = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {

@@ -143,6 +143,17 @@ TEST_F(PictureFile, ARefusedDatasetLeavesNothing) {
   EXPECT_FALSE(fs::exists(out)) << called.text;
 }
 
+TEST_F(PictureFile, ARegionBeyondThePictureIsTold) {
+  write_picture(folder_ / "discs.png", grey_with_discs());
+  const std::string command =
+      "image " + (folder_ / "discs.png").string() + " --scale 1cm/px --sections 2 --out ";
+  const std::string told = "the region reaches beyond the picture";
+  const Called beyond = call(command + (folder_ / "a").string() + " --region '0,0 99999,99999'"),
+               within = call(command + (folder_ / "b").string() + " --region '0,0 60,60'");
+  EXPECT_THAT(beyond.text, testing::HasSubstr(told));
+  EXPECT_THAT(within.text, testing::Not(testing::HasSubstr(told)));
+}
+
 TEST_F(PictureFile, ExifTurnsAPhotographUpright) {
   // 60 wide and 40 high with a bright left half; orientation 6: to be turned by 90 degrees clockwise.
   cv::Mat3b picture(40, 60, cv::Vec3b(10, 10, 10));
