@@ -71,15 +71,16 @@ Grading::Grading(std::string name, std::vector<Point> points)
   if (points_.back().passing != 1)
     throw std::invalid_argument(
         fmt::format("the largest diameter must have passing 1, not {}", points_.back().passing));
-  // Sieves that nothing passes or all does say nothing but where the curve ends.
-  const auto begins =
-      std::find_if(points_.begin(), points_.end(), [](const Point& p) { return p.passing != 0; });
-  if (begins - points_.begin() > 1) points_.erase(points_.begin(), begins - 1);
-  const auto ends =
-      std::find_if(points_.begin(), points_.end(), [](const Point& p) { return p.passing == 1; });
-  if (ends != points_.end() && ends + 1 != points_.end() &&
-      std::all_of(ends, points_.end(), [](const Point& p) { return p.passing == 1; }))
-    points_.erase(ends + 1, points_.end());
+  // Of sieves that the same passes, at the ends none or all, the outer ones say where rock is; others
+  // nothing.
+  std::vector<Point> kept;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const double here = points_[i].passing;
+    const bool as_finer = i == 0 ? here == 0 : points_[i - 1].passing == here,
+               as_coarser = i + 1 == points_.size() ? here == 1 : points_[i + 1].passing == here;
+    if (!(as_finer && as_coarser)) kept.push_back(points_[i]);
+  }
+  points_ = std::move(kept);
 }
 
 double Grading::passing(double diameter) const {

@@ -16,8 +16,8 @@ class Grading {
   };
 
   /// Points with strictly rising diameters and passing that does not fall, from 0 to 1; throws
-  /// std::invalid_argument otherwise. Where passing stays the rock has a gap. Further points of passing 0 or
-  /// 1 at either end are left out.
+  /// std::invalid_argument otherwise. Where passing stays the rock has a gap. Points that say
+  /// nothing are left out: within a gap, and of passing 0 or 1 beyond the first at either end.
   Grading(std::string name, std::vector<Point> points);
 
   /// Passing share at a diameter (m).

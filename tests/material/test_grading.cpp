@@ -120,7 +120,9 @@ TEST(GradingFile, ReadsTheTableOfALaboratory) {
 
 // Where nothing lies between two sizes passing stays, and D_x jumps.
 TEST(Grading, AGapHasNoRock) {
-  const Grading g("gap", {{0.01, 0}, {0.02, 0.4}, {0.1, 0.4}, {0.2, 1}});
+  const Grading g(
+      "gap", {{0.001, 0}, {0.01, 0}, {0.02, 0.4}, {0.03, 0.4}, {0.05, 0.4}, {0.1, 0.4}, {0.2, 1}, {1, 1}});
+  EXPECT_EQ(g.points().size(), 4u);
   EXPECT_DOUBLE_EQ(g.passing(0.05), 0.4);
   EXPECT_LE(g.diameter(0.39), 0.02);
   EXPECT_GE(g.diameter(0.41), 0.1);
