@@ -131,10 +131,7 @@ int write_dataset_of(const AnalyseOptions& options, const scree::Scenario& scena
 }  // namespace
 
 int run_analyse(const AnalyseOptions& options) {
-  if (const std::string twice = given_twice(options.files); !twice.empty()) {
-    fmt::print(stderr, "{}\n", twice);
-    return kBadInput;
-  }
+  if (given_twice(options.files)) return kBadInput;
   const auto scenario = scenario_of(options);
   if (!scenario) return kBadInput;
   const auto reading = reading_of(options, *scenario);

@@ -95,10 +95,7 @@ int run_diagnose(const DiagnoseOptions& options) {
   for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
   if (!loaded.errors.empty()) return kBadInput;
   std::vector<scree::Dataset> datasets;
-  if (const std::string twice = given_twice(options.datasets); !twice.empty()) {
-    fmt::print(stderr, "{}\n", twice);
-    return kBadInput;
-  }
+  if (given_twice(options.datasets)) return kBadInput;
   for (const fs::path& file : options.datasets) {
     if (!is_of_kind(file, scree::FileKind::dataset)) return kBadInput;
     scree::DatasetResult dataset = scree::load_dataset(file, asset_dir());

@@ -20,8 +20,8 @@
 #include "cli/picture_options.h"
 #include "cli/written_dataset.h"
 #include "scree_version.h"
-#include "sim/material/input_text.h"
 #include "sim/io/text_file.h"
+#include "sim/material/input_text.h"
 #include "sim/scene/scenario.h"
 
 namespace fs = std::filesystem;
@@ -180,10 +180,7 @@ WrittenDataset dataset_of(const ImageOptions& options, const scree::Scenario& sc
 
 // What can be said before any picture is looked at.
 bool may_begin(const ImageOptions& options, std::optional<scree::Scenario>& scenario) {
-  if (const std::string twice = given_twice(options.photos); !twice.empty()) {
-    fmt::print(stderr, "{}\n", twice);
-    return false;
-  }
+  if (given_twice(options.photos)) return false;
   if (!options.truth.empty() && options.truth.size() != options.photos.size()) {
     fmt::print(stderr, "--truth: {} files for {} photographs; one each is needed, in their order\n",
                options.truth.size(), options.photos.size());

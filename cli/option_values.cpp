@@ -68,14 +68,16 @@ bool is_of_kind(const std::filesystem::path& file, scree::FileKind wanted) {
   return why.empty();
 }
 
-std::string given_twice(const std::vector<std::filesystem::path>& files) {
+bool given_twice(const std::vector<std::filesystem::path>& files) {
   for (const std::filesystem::path& file : files) {
     std::error_code none;
     const auto is_same = [&](const std::filesystem::path& other) {
       return std::filesystem::equivalent(file, other, none);
     };
-    if (std::count_if(files.begin(), files.end(), is_same) > 1)
-      return file.string() + ": is given twice; every measurement would count twice";
+    if (std::count_if(files.begin(), files.end(), is_same) > 1) {
+      fmt::print(stderr, "{}: is given twice; every measurement would count twice\n", file.string());
+      return true;
+    }
   }
-  return {};
+  return false;
 }

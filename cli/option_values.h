@@ -23,5 +23,5 @@ std::optional<std::pair<double, double>> pair_in(const std::string& option, cons
 /// False, with a message, if the file is one of another kind.
 bool is_of_kind(const std::filesystem::path& file, scree::FileKind wanted);
 
-/// What is wrong if two of these names are one file that is there; else empty.
-std::string given_twice(const std::vector<std::filesystem::path>& files);
+/// True, with a message, if two of these names are one file that is there.
+bool given_twice(const std::vector<std::filesystem::path>& files);

@@ -110,10 +110,9 @@ class TwinMaker {
         experiments_(experiments_of(model)),
         space_(space_of(model, experiments_, {})),
         base_model_(learn_base_model(design)),
-        random_(spec.seed, 0, RandomPurpose::measurement) {
-    error_variances_ = variances_of_errors();
-    covariance_ = covariance_of_means();
-  }
+        error_variances_(variances_of_errors()),
+        covariance_(covariance_of_means()),
+        random_(spec.seed, 0, RandomPurpose::measurement) {}
 
   Twin make() {
     Twin twin;
@@ -322,8 +321,8 @@ class TwinMaker {
   const std::vector<Dataset::Experiment> experiments_;
   const ModelSpace space_;
   const LearntModel base_model_;
-  std::vector<Eigen::VectorXd> error_variances_;
-  Eigen::MatrixXd covariance_;  // of the means that will be measured
+  const std::vector<Eigen::VectorXd> error_variances_;
+  const Eigen::MatrixXd covariance_;  // of the means that will be measured
   Random random_;
 };
 

@@ -143,10 +143,7 @@ Grading Grading::with_fines(double share, double ratio) const {
 }
 
 Grading read_grading(const std::filesystem::path& file) {
-  std::error_code none;
-  if (const auto size = std::filesystem::file_size(file, none); !none && size > kMostFileBytes)
-    read_input_bytes(file, kMostFileBytes);  // says so
-  DelimitedTable table(file);
+  DelimitedTable table(file, kMostFileBytes);
   const Columns columns = columns_of(file, table);
   struct Row {
     int line;

@@ -48,8 +48,8 @@ std::optional<double> number_in(std::string_view text, bool comma) {
   return value;
 }
 
-DelimitedTable::DelimitedTable(const std::filesystem::path& file)
-    : file_(file), text_(read_input_text(file)) {
+DelimitedTable::DelimitedTable(const std::filesystem::path& file, std::uintmax_t most)
+    : file_(file), text_(read_input_text(file, most)) {
   // The separator is the header's; read it once to see which.
   separator_ = '\n';
   if (!read_row()) throw FileError(file, 0, "the file has no header");

@@ -27,9 +27,9 @@ std::string in_small_letters(std::string_view text);
 /// with # are passed over; line ends of Windows and a byte order mark are taken. All errors are FileError.
 class DelimitedTable {
  public:
-  /// Throws when the file is empty, no text, or has no header, a column stands twice in it, or
-  /// has a name longer than kLongestName.
-  explicit DelimitedTable(const std::filesystem::path& file);
+  /// Throws when the file is empty, larger than `most` bytes, no text, or has no header, a column stands
+  /// twice in it, or has a name longer than kLongestName.
+  explicit DelimitedTable(const std::filesystem::path& file, std::uintmax_t most = kMostBytes);
 
   const std::vector<std::string>& header() const { return header_; }  ///< as written, without blanks around
   /// Number of the column of this name, whatever its case; none if there is none.
