@@ -251,10 +251,6 @@ void sort_by_probability(std::vector<Judgement>& judgements) {
                    [](const auto& a, const auto& b) { return a.probability > b.probability; });
 }
 
-bool explains(const Judgement& j) {
-  return j.simulated == Judgement::Simulated::open && j.gap.p > kFitsAbove;
-}
-
 bool holds(const Hypothesis& larger, const Hypothesis& smaller) {
   return std::includes(larger.effects.begin(), larger.effects.end(), smaller.effects.begin(),
                        smaller.effects.end());
@@ -263,13 +259,13 @@ bool holds(const Hypothesis& larger, const Hypothesis& smaller) {
 DiagnosisVerdict verdict_of(const Diagnosis& d) {
   using Kind = DiagnosisVerdict::Kind;
   if (d.nominal.p > kNothingAbove) return {Kind::nothing, {}};
-  if (explains(d.calibration)) return {Kind::calibration, {}};
+  if (d.calibration.explains()) return {Kind::calibration, {}};
   const auto& all = d.judgements;
   std::size_t first = all.size();
   double unknown = 0;
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (all[k].hypothesis.unknown) unknown = all[k].probability;
-    if (first == all.size() && is_effect(all[k]) && explains(all[k])) first = k;
+    if (first == all.size() && is_effect(all[k]) && all[k].explains()) first = k;
   }
   // What re-calibration leaves may still be chance: anything else must be much more probable.
   const double leading = std::max(unknown, first < all.size() ? all[first].probability : 0);
@@ -278,7 +274,7 @@ DiagnosisVerdict verdict_of(const Diagnosis& d) {
   if (first == all.size() || unknown > all[first].probability) return {Kind::unknown, {}};
   DiagnosisVerdict verdict{Kind::effect, {first}};
   for (std::size_t k = 0; k < all.size(); ++k)
-    if (k != first && is_effect(all[k]) && explains(all[k]) &&
+    if (k != first && is_effect(all[k]) && all[k].explains() &&
         !holds(all[k].hypothesis, all[first].hypothesis) &&
         all[k].probability * kApartBy > all[first].probability)
       verdict.named.push_back(k);

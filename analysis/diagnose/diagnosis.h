@@ -64,6 +64,9 @@ struct Judgement {
   /// Root mean square change by the effects as the surfaces have it, in standard uncertainties, after what
   /// the base parameters make up for.
   double signature = 0;
+
+  /// The fit explains the data (kFitsAbove), and no full simulation of it contradicts it or failed.
+  bool explains() const { return simulated == Simulated::open && gap.p > kFitsAbove; }
 };
 
 /// How well a hypothesis foretells what it was not fitted to: parts of the data left out in turn.

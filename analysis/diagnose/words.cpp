@@ -12,6 +12,12 @@ namespace {
 
 constexpr double kOutsideTwo = 0.0455;  // share of a normal distribution beyond two standard deviations
 
+// "= 0.013", "< 0.001"
+std::string p_compared(double p) {
+  const std::string text = p_text(p);
+  return text.starts_with('<') ? text : "= " + text;
+}
+
 // The last part of a key: bond_number.
 std::string short_key(const std::string& key) {
   return key.substr(key.rfind('.') + 1);
@@ -57,6 +63,26 @@ std::string title_of(const ModelSpace& space, const Hypothesis& hypothesis) {
   return text;
 }
 
+std::string unknown_in_words(const ModelSpace& space, const Diagnosis& d) {
+  const auto& all = d.judgements;
+  const std::string missing =
+      fmt::format("Something is missing that is not among the {} effects looked for", space.effects.size());
+  const auto unknown =
+      std::find_if(all.begin(), all.end(), [](const Judgement& j) { return j.hypothesis.unknown; });
+  const auto rival = std::find_if(all.begin(), all.end(), [](const Judgement& j) {
+    return !j.hypothesis.effects.empty() && j.explains();
+  });
+  if (unknown != all.end() && rival != all.end())
+    return fmt::format(
+        "{}, with probability {}; of these, {} would explain the data (p {}), with probability {}.", missing,
+        decimals_text(unknown->probability, 2), name_of(space, rival->hypothesis), p_compared(rival->gap.p),
+        decimals_text(rival->probability, 2));
+  const bool pairs =
+      std::any_of(all.begin(), all.end(), [](const Judgement& j) { return j.hypothesis.effects.size() > 1; });
+  return fmt::format("{}: none of them explains the data{}.", missing,
+                     pairs ? ", alone or with a second one" : " alone; pairs were not tried");
+}
+
 // What is said first: the answer.
 std::string answer(const DiagnosisOutcome& o) {
   const Diagnosis& d = o.diagnosis;
@@ -75,14 +101,7 @@ std::string answer(const DiagnosisOutcome& o) {
       return fmt::format("No effect needs to be added: other parameters explain the {} numbers. {}.",
                          d.measured.values.size(), base_in_words(o.space, d.calibration));
     case Kind::unknown:
-      return fmt::format(
-          "Something is missing that is not among the {} effects looked for: none of them explains the "
-          "data{}.",
-          o.space.effects.size(),
-          std::any_of(d.judgements.begin(), d.judgements.end(),
-                      [](const Judgement& j) { return j.hypothesis.effects.size() > 1; })
-              ? ", alone or with a second one"
-              : " alone; pairs were not tried");
+      return unknown_in_words(o.space, d);
     case Kind::effect: {
       const Judgement& first = d.judgements[d.verdict.named.front()];
       return fmt::format("What is missing is {}{}, with probability {}: {}.",
@@ -171,9 +190,7 @@ std::string values_in_words(const ModelSpace& space, const Judgement& judgement)
 }
 
 std::string gap_in_words(const Gap& gap) {
-  const std::string p = p_text(gap.p);
-  return fmt::format("chi-square {} on {}, p {}", number_text(gap.chi2), gap.freedom,
-                     p.starts_with('<') ? p : "= " + p);
+  return fmt::format("chi-square {} on {}, p {}", number_text(gap.chi2), gap.freedom, p_compared(gap.p));
 }
 
 std::vector<std::string> diagnosis_in_words(const DiagnosisOutcome& o) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "analysis/diagnose/in_parallel.h"
+#include "analysis/diagnose/outcome.h"
 #include "tests/diagnose/synthetic.h"
 
 namespace scree {
@@ -362,6 +363,25 @@ TEST(Verdict, NamesNothingThatIsLessProbableThanCalibration) {
   d.judgements[1].probability = 1e-4;
   refute(d, 4, Gap{90, 10, 1e-9});
   EXPECT_EQ(d.verdict.kind, Kind::effect);
+}
+
+// Something unknown is more probable than an effect that explains the data: that effect is not passed over.
+TEST_F(DiagnosisOf, UnknownIsSaidWithTheEffectThatWouldDo) {
+  DiagnosisOutcome o;
+  o.space = world.space;
+  o.diagnosis = of(SyntheticWorld::point(0.1, 0.1, {{1, 0.6}}), 3);
+  o.nominal.mean = o.diagnosis.measured.vector();
+  o.nominal.std = Eigen::VectorXd::Zero(o.nominal.mean.size());
+  const std::size_t right = o.diagnosis.verdict.named.front();
+  Judgement& best = o.diagnosis.judgements[right];
+  best.gap.p = 0.13;
+  o.diagnosis.verdict = {Kind::unknown, {}};
+  const std::string& name = world.space.effects[1].name;
+  EXPECT_THAT(diagnosis_in_words(o).front(),
+              testing::HasSubstr(fmt::format("of these, {} would explain the data (p = 0.130)", name)));
+  for (Judgement& j : o.diagnosis.judgements)
+    if (!j.hypothesis.unknown) j.gap.p = 0.002;
+  EXPECT_THAT(diagnosis_in_words(o).front(), testing::HasSubstr("none of them explains the data"));
 }
 
 // A surface that is less sure of itself leaves an amplitude more open.
