@@ -255,8 +255,7 @@ void print_answer(const scree::CalibrationSpec& spec, const scree::CalibrationRe
 // The table of settings of Bullet that are equivalent to rrlinear's parameters.
 int run_equivalence(const CalibrateOptions& options) {
   const scree::EquivalenceSpecResult loaded = scree::load_equivalence(options.file);
-  for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
-  if (!loaded.errors.empty()) return kBadInput;
+  if (!nothing_wrong(loaded.errors)) return kBadInput;
   const scree::EquivalenceSpec& spec = loaded.spec;
   const scree::ScenarioResult first = scree::load_scenario(spec.scenario, spec.fixed, asset_dir());
   if (!first.errors.empty()) {
@@ -322,8 +321,7 @@ int run_calibrate(const CalibrateOptions& options) {
   if (!is_of_kind(options.file, scree::FileKind::calibration)) return kBadInput;
   if (scree::is_equivalence(options.file)) return run_equivalence(options);
   const scree::CalibrationSpecResult loaded = scree::load_calibration(options.file);
-  for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
-  if (!loaded.errors.empty()) return kBadInput;
+  if (!nothing_wrong(loaded.errors)) return kBadInput;
   const scree::CalibrationSpec& spec = loaded.spec;
   if (const std::string why = scree::why_not_run(spec, asset_dir()); !why.empty()) {
     fmt::print(stderr, "{}: {}\n", options.file.string(), why);

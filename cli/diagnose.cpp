@@ -92,15 +92,13 @@ void write_patches(const scree::DiagnosisSession& session, const scree::Diagnosi
 int run_diagnose(const DiagnoseOptions& options) {
   if (!is_of_kind(options.model, scree::FileKind::model)) return kBadInput;
   const scree::DiagnosisModelResult loaded = scree::load_model(options.model, asset_dir());
-  for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
-  if (!loaded.errors.empty()) return kBadInput;
+  if (!nothing_wrong(loaded.errors)) return kBadInput;
   std::vector<scree::Dataset> datasets;
   if (given_twice(options.datasets)) return kBadInput;
   for (const fs::path& file : options.datasets) {
     if (!is_of_kind(file, scree::FileKind::dataset)) return kBadInput;
     scree::DatasetResult dataset = scree::load_dataset(file, asset_dir());
-    for (const scree::ScenarioError& error : dataset.errors) fmt::print(stderr, "{}\n", error.text());
-    if (!dataset.errors.empty()) return kBadInput;
+    if (!nothing_wrong(dataset.errors)) return kBadInput;
     for (const scree::Dataset::Experiment& experiment : dataset.dataset.experiments) {
       const auto reasons = scree::why_not_simulated(loaded.model, experiment, asset_dir());
       for (const std::string& reason : reasons)

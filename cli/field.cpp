@@ -74,8 +74,7 @@ std::optional<WrittenDataset> dataset_of(const FieldCliOptions& options, const s
                                          int sections) {
   if (!is_of_kind(options.scenario, scree::FileKind::scenario)) return std::nullopt;
   scree::ScenarioResult loaded = scree::load_scenario(options.scenario, {}, asset_dir());
-  for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
-  if (!loaded.errors.empty()) return std::nullopt;
+  if (!nothing_wrong(loaded.errors)) return std::nullopt;
   scree::FieldDatasetRequest request{
       options.scenario, {}, options.gradings.filename().string(), options.observables};
   // The pile must be cut as the pictures are; that changes how it is looked at, not how it is made.

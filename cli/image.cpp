@@ -189,8 +189,7 @@ bool may_begin(const ImageOptions& options, std::optional<scree::Scenario>& scen
   if (!options.scenario.empty()) {
     if (!is_of_kind(options.scenario, scree::FileKind::scenario)) return false;
     scree::ScenarioResult loaded = scree::load_scenario(options.scenario, {}, asset_dir());
-    for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
-    if (!loaded.errors.empty()) return false;
+    if (!nothing_wrong(loaded.errors)) return false;
     if (options.photos.size() == 1 && !options.relative_uncertainty) {
       fmt::print(stderr,
                  "--scenario: one photograph says nothing of the scatter between repeats: give several, or "

@@ -68,6 +68,11 @@ bool is_of_kind(const std::filesystem::path& file, scree::FileKind wanted) {
   return why.empty();
 }
 
+bool nothing_wrong(const std::vector<scree::ScenarioError>& errors) {
+  for (const scree::ScenarioError& error : errors) fmt::print(stderr, "{}\n", error.text());
+  return errors.empty();
+}
+
 bool given_twice(const std::vector<std::filesystem::path>& files) {
   for (const std::filesystem::path& file : files) {
     std::error_code none;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/ensemble/file_kind.h"
+#include "sim/scene/scenario.h"
 
 /// A number from low to high. CLI::Range lets nan pass.
 CLI::Validator within(double low, double high);
@@ -22,6 +23,9 @@ std::optional<std::pair<double, double>> pair_in(const std::string& option, cons
 
 /// False, with a message, if the file is one of another kind.
 bool is_of_kind(const std::filesystem::path& file, scree::FileKind wanted);
+
+/// False, with a line each, if a file that was read has errors.
+bool nothing_wrong(const std::vector<scree::ScenarioError>& errors);
 
 /// True, with a message, if two of these names are one file that is there.
 bool given_twice(const std::vector<std::filesystem::path>& files);

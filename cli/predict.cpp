@@ -29,8 +29,7 @@ int refuse(const std::string& message) {
 int run_predict(const PredictOptions& options) {
   if (!is_of_kind(options.file, scree::FileKind::sweep)) return kBadInput;
   const scree::SweepResult loaded = scree::load_sweep(options.file, asset_dir());
-  for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
-  if (!loaded.errors.empty()) return kBadInput;
+  if (!nothing_wrong(loaded.errors)) return kBadInput;
   const scree::Sweep& sweep = loaded.sweep;
   const std::string output = options.output.empty() ? "angle_deg" : options.output;
 

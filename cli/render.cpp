@@ -10,9 +10,9 @@
 #include "cli/commands.h"
 #include "cli/option_values.h"
 #include "cli/picture_options.h"
-#include "sim/material/input_text.h"
 #include "sim/io/snapshot_reader.h"
 #include "sim/io/text_file.h"
+#include "sim/material/input_text.h"
 
 namespace fs = std::filesystem;
 

@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/ensemble/sweep_results.h"
 #include "cli/ensemble_console.h"
+#include "cli/option_values.h"
 #include "cli/output_folder.h"
 
 namespace fs = std::filesystem;
@@ -69,8 +70,7 @@ int run_reproduce(const ReproduceOptions& options) {
   if (files.empty()) return kBadInput;
   const scree::SweepResult loaded = scree::load_cases(files, options.seeds, asset_dir());
   for (const std::string& warning : loaded.warnings) fmt::print(stderr, "warning: {}\n", warning);
-  for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
-  if (!loaded.errors.empty()) return kBadInput;
+  if (!nothing_wrong(loaded.errors)) return kBadInput;
   const scree::Sweep& sweep = loaded.sweep;
   if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
 

@@ -59,8 +59,7 @@ struct Plan {
 // False, with messages, if the scenario cannot be run.
 bool check(const scree::ScenarioResult& loaded) {
   for (const std::string& warning : loaded.warnings) fmt::print(stderr, "warning: {}\n", warning);
-  for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
-  if (!loaded.errors.empty()) return false;
+  if (!nothing_wrong(loaded.errors)) return false;
   if (loaded.scenario.output.trajectory && !loaded.scenario.effects.empty() &&
       scree::effective_model(loaded.scenario).changes.breakage.on()) {
     fmt::print(stderr,

@@ -33,8 +33,7 @@ std::vector<scree::StudyOption> options_of(const scree::Study& study,
 int run_study(const StudyOptions& options) {
   if (!is_of_kind(options.file, scree::FileKind::study)) return kBadInput;
   const scree::StudyResult loaded = scree::load_study(options.file, asset_dir());
-  for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
-  if (!loaded.errors.empty()) return kBadInput;
+  if (!nothing_wrong(loaded.errors)) return kBadInput;
   const scree::Study& study = loaded.study;
   const std::string& by = options.rank_by.empty() ? study.rank_by : options.rank_by;
   const scree::StudyCriterion* criterion = scree::study_criterion(by);

@@ -71,8 +71,7 @@ bool draw(const TwinOptions& options, const scree::DiagnosisModel& model, scree:
 int run_twin(const TwinOptions& options) {
   if (!is_of_kind(options.model, scree::FileKind::model)) return kBadInput;
   scree::DiagnosisModelResult loaded = scree::load_model(options.model, asset_dir());
-  for (const scree::ScenarioError& error : loaded.errors) fmt::print(stderr, "{}\n", error.text());
-  if (!loaded.errors.empty()) return kBadInput;
+  if (!nothing_wrong(loaded.errors)) return kBadInput;
   const scree::DiagnosisModel& model = loaded.model;
   if (model.experiments.empty()) {
     fmt::print(stderr, "{}: a twin needs `experiments` with their observables\n", options.model.string());

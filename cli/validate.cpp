@@ -8,6 +8,7 @@
 #include "cli/ensemble/file_kind.h"
 #include "cli/ensemble/model_file.h"
 #include "cli/ensemble/study_file.h"
+#include "cli/option_values.h"
 #include "sim/scene/estimate.h"
 #include "sim/scene/scenario.h"
 
@@ -15,8 +16,7 @@ namespace {
 
 int validate_dataset(const std::filesystem::path& file) {
   const scree::DatasetResult result = scree::load_dataset(file, asset_dir());
-  for (const scree::ScenarioError& error : result.errors) fmt::print(stderr, "{}\n", error.text());
-  if (!result.errors.empty()) return kBadInput;
+  if (!nothing_wrong(result.errors)) return kBadInput;
   const scree::Dataset& dataset = result.dataset;
   fmt::print("{}: ok: dataset '{}', {} observable{} of {} experiment{}\n", file.string(), dataset.title,
              dataset.observables.size(), dataset.observables.size() == 1 ? "" : "s",
@@ -42,15 +42,9 @@ int validate_dataset(const std::filesystem::path& file) {
   return kOk;
 }
 
-// True if nothing is wrong; else all that is, on stderr.
-bool good(const std::vector<scree::ScenarioError>& errors) {
-  for (const scree::ScenarioError& error : errors) fmt::print(stderr, "{}\n", error.text());
-  return errors.empty();
-}
-
 int validate_sweep(const std::filesystem::path& file) {
   const scree::SweepResult loaded = scree::load_sweep(file, asset_dir());
-  if (!good(loaded.errors)) return kBadInput;
+  if (!nothing_wrong(loaded.errors)) return kBadInput;
   std::size_t runs = 0;
   for (const scree::SweepPoint& point : loaded.sweep.points) runs += point.scenario.seeds.size();
   fmt::print("{}: ok: sweep over {}, {} points, {} runs\n", file.string(),
@@ -61,12 +55,12 @@ int validate_sweep(const std::filesystem::path& file) {
 int validate_calibration(const std::filesystem::path& file) {
   if (scree::is_equivalence(file)) {
     const scree::EquivalenceSpecResult loaded = scree::load_equivalence(file);
-    if (!good(loaded.errors)) return kBadInput;
+    if (!nothing_wrong(loaded.errors)) return kBadInput;
     fmt::print("{}: ok: equivalent settings of engine impulse, by {}\n", file.string(), loaded.spec.output);
     return kOk;
   }
   const scree::CalibrationSpecResult loaded = scree::load_calibration(file);
-  if (!good(loaded.errors)) return kBadInput;
+  if (!nothing_wrong(loaded.errors)) return kBadInput;
   if (const std::string why = scree::why_not_run(loaded.spec, asset_dir()); !why.empty()) {
     fmt::print(stderr, "{}: {}\n", file.string(), why);
     return kBadInput;
@@ -79,7 +73,7 @@ int validate_calibration(const std::filesystem::path& file) {
 
 int validate_study(const std::filesystem::path& file) {
   const scree::StudyResult loaded = scree::load_study(file, asset_dir());
-  if (!good(loaded.errors)) return kBadInput;
+  if (!nothing_wrong(loaded.errors)) return kBadInput;
   fmt::print("{}: ok: study of {} options, ranked by {}\n", file.string(), loaded.study.options.size(),
              loaded.study.rank_by);
   return kOk;
@@ -87,7 +81,7 @@ int validate_study(const std::filesystem::path& file) {
 
 int validate_model(const std::filesystem::path& file) {
   const scree::DiagnosisModelResult loaded = scree::load_model(file, asset_dir());
-  if (!good(loaded.errors)) return kBadInput;
+  if (!nothing_wrong(loaded.errors)) return kBadInput;
   std::vector<std::string> parameters;
   for (const scree::BaseAxis& axis : loaded.model.base) parameters.push_back(axis.key);
   fmt::print("{}: ok: model, parameters {}, effects {}\n", file.string(), fmt::join(parameters, ", "),
@@ -120,8 +114,7 @@ int run_validate(const std::filesystem::path& file, const std::vector<std::strin
   }
   const scree::ScenarioResult result = scree::load_scenario(file, overrides, asset_dir());
   for (const std::string& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning);
-  for (const scree::ScenarioError& error : result.errors) fmt::print(stderr, "{}\n", error.text());
-  if (!result.errors.empty()) return kBadInput;
+  if (!nothing_wrong(result.errors)) return kBadInput;
 
   const scree::Scenario& scenario = result.scenario;
   const scree::Grading grading = scree::effective_model(scenario).grading;

@@ -40,7 +40,7 @@ std::uint64_t seeds_of_effect(const std::string& name) {
   static const std::map<std::string, std::uint64_t> blocks = [] {
     std::map<std::string, std::uint64_t> all;  // by name, in the order of the alphabet
     for (const Effect& effect : all_effects())
-      if (!effect.measures) all[effect.name] = 0;
+      if (!effect.measures) all[std::string(effect.name)] = 0;
     std::set<std::uint64_t> taken;
     for (auto& [effect, block] : all) {
       block = hash_of(effect) % kEffectBlocks;
