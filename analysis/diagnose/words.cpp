@@ -74,9 +74,10 @@ std::string unknown_in_words(const ModelSpace& space, const Diagnosis& d) {
   });
   if (unknown != all.end() && rival != all.end())
     return fmt::format(
-        "{}, with probability {}; of these, {} would explain the data (p {}), with probability {}.", missing,
-        decimals_text(unknown->probability, 2), name_of(space, rival->hypothesis), p_compared(rival->gap.p),
-        decimals_text(rival->probability, 2));
+        "{}, with probability {}; of these, {} would explain the data by its fit (p {}), with probability "
+        "{}.",
+        missing, decimals_text(unknown->probability, 2), name_of(space, rival->hypothesis),
+        p_compared(rival->gap.p), decimals_text(rival->probability, 2));
   const bool pairs =
       std::any_of(all.begin(), all.end(), [](const Judgement& j) { return j.hypothesis.effects.size() > 1; });
   return fmt::format("{}: none of them explains the data{}.", missing,

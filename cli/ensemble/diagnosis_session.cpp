@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -12,7 +11,6 @@
 #include "cli/ensemble/design.h"
 #include "cli/ensemble/run_request.h"
 #include "cli/ensemble/tried_models.h"
-#include "sim/effects/effect.h"
 
 namespace scree {
 namespace {
@@ -21,7 +19,7 @@ namespace fs = std::filesystem;
 
 // Seeds of simulations; those of `scree twin` are others (twin.cpp).
 constexpr std::uint64_t kBaseSeeds = 500'000, kEffectSeeds = 510'000, kCheckSeeds = 700'000;
-constexpr std::uint64_t kSeedsOfOneEffect = 1000, kEffectBlocks = 100;
+constexpr std::uint64_t kSeedsOfOneEffect = 1000;
 constexpr double kRivalBy = 20;  // ratio of probabilities up to which a rival is simulated, too
 constexpr std::size_t kMostRivals = 2;
 constexpr std::size_t kMostNext = 5;  // measurements proposed
@@ -31,24 +29,6 @@ std::uint64_t hash_of(const std::string& name) {
   std::uint64_t hash = 0xcbf29ce484222325ull;
   for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
   return hash;
-}
-
-// The first seed of an effect's simulations less one: by its name, so that it does not depend on which others
-// the model has. Of two in the library that would have the same, the later in the alphabet takes the next
-// free.
-std::uint64_t seeds_of_effect(const std::string& name) {
-  static const std::map<std::string, std::uint64_t> blocks = [] {
-    std::map<std::string, std::uint64_t> all;  // by name, in the order of the alphabet
-    for (const Effect& effect : all_effects())
-      if (!effect.measures) all[std::string(effect.name)] = 0;
-    std::set<std::uint64_t> taken;
-    for (auto& [effect, block] : all) {
-      block = hash_of(effect) % kEffectBlocks;
-      while (!taken.insert(block).second) block = (block + 1) % kEffectBlocks;
-    }
-    return all;
-  }();
-  return kEffectSeeds + blocks.at(name) * kSeedsOfOneEffect;
 }
 
 Eigen::VectorXd coordinates(const std::vector<double>& unit, std::size_t first, std::size_t count) {
@@ -153,7 +133,7 @@ std::vector<PlannedRun> design_of(const ModelSpace& space, const SimulationCount
           read_piles(space, counts, {before, e}, (counts.effect + 1) / 2, runs);
       continue;
     }
-    seed = seeds_of_effect(effect.name);
+    seed = kEffectSeeds + own % 100 * kSeedsOfOneEffect;
     auto points = latin_hypercube(counts.effect, static_cast<int>(p + others), own);
     for (int k = 0; k < counts.effect; ++k) {
       const auto& unit = points[static_cast<std::size_t>(k)];

@@ -377,8 +377,9 @@ TEST_F(DiagnosisOf, UnknownIsSaidWithTheEffectThatWouldDo) {
   best.gap.p = 0.13;
   o.diagnosis.verdict = {Kind::unknown, {}};
   const std::string& name = world.space.effects[1].name;
-  EXPECT_THAT(diagnosis_in_words(o).front(),
-              testing::HasSubstr(fmt::format("of these, {} would explain the data (p = 0.130)", name)));
+  EXPECT_THAT(
+      diagnosis_in_words(o).front(),
+      testing::HasSubstr(fmt::format("of these, {} would explain the data by its fit (p = 0.130)", name)));
   for (Judgement& j : o.diagnosis.judgements)
     if (!j.hypothesis.unknown) j.gap.p = 0.002;
   EXPECT_THAT(diagnosis_in_words(o).front(), testing::HasSubstr("none of them explains the data"));

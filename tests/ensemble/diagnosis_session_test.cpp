@@ -11,7 +11,6 @@
 #include "cli/ensemble/scenario_patch.h"
 #include "cli/ensemble/twin.h"
 #include "scree_version.h"
-#include "sim/effects/effect.h"
 #include "sim/io/text_file.h"
 #include "sim/material/random.h"
 
@@ -262,20 +261,6 @@ TEST_F(Session, TheDesignIsTheSameForAllDataAndWhenAnEffectIsLeftOut) {
   EXPECT_EQ(keys.size(), 6u + 24 + 4 * 10);
   for (const RunRequest& request : fewer.design()[0].requests) EXPECT_TRUE(keys.contains(request.key));
   EXPECT_EQ(fewer.design()[0].requests.size(), keys.size() - 10);
-}
-
-// Two effects with the same seeds would share their packings, and their scatter would not be independent.
-TEST(Design, NoTwoEffectsOfTheLibraryShareASeed) {
-  ModelSpace space;
-  space.base = {{"material.mu", 0.3, 0.2, 0.4}};
-  for (const Effect& effect : all_effects())
-    if (!effect.measures) space.effects.push_back({std::string(effect.name), "", 0, {{"amplitude", ""}}, {}});
-  const SimulationCounts counts{6, 24, 10, 4, 4};
-  const std::vector<PlannedRun> design = design_of(space, counts);
-  std::set<std::uint64_t> seeds;
-  for (const PlannedRun& run : design) seeds.insert(run.seed);
-  EXPECT_EQ(design.size(), 6u + 24 + 10 * space.effects.size());
-  EXPECT_EQ(seeds.size(), design.size());
 }
 
 TEST_F(Session, EffectsOnMeasurementReadThePilesOfTheBaseModel) {
