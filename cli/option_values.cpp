@@ -7,6 +7,7 @@
 
 #include "analysis/results/output_units.h"
 #include "sim/material/input_text.h"
+#include "sim/scene/scenario.h"
 
 namespace {
 

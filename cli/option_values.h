@@ -8,7 +8,10 @@
 #include <vector>
 
 #include "cli/ensemble/file_kind.h"
-#include "sim/scene/scenario.h"
+
+namespace scree {
+struct ScenarioError;
+}
 
 /// A number from low to high. CLI::Range lets nan pass.
 CLI::Validator within(double low, double high);

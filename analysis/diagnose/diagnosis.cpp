@@ -242,10 +242,6 @@ void find(const ModelSpace& space, const LearntModel& model, Diagnosis& d) {
             [](const auto& a, const auto& b) { return std::abs(a.z) > std::abs(b.z); });
 }
 
-bool is_effect(const Judgement& j) {
-  return !j.hypothesis.effects.empty() && !j.hypothesis.unknown;
-}
-
 void sort_by_probability(std::vector<Judgement>& judgements) {
   std::stable_sort(judgements.begin(), judgements.end(),
                    [](const auto& a, const auto& b) { return a.probability > b.probability; });
@@ -265,7 +261,7 @@ DiagnosisVerdict verdict_of(const Diagnosis& d) {
   double unknown = 0;
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (all[k].hypothesis.unknown) unknown = all[k].probability;
-    if (first == all.size() && is_effect(all[k]) && all[k].explains()) first = k;
+    if (first == all.size() && all[k].hypothesis.is_effect() && all[k].explains()) first = k;
   }
   // What re-calibration leaves may still be chance: anything else must be much more probable.
   const double leading = std::max(unknown, first < all.size() ? all[first].probability : 0);
@@ -274,7 +270,7 @@ DiagnosisVerdict verdict_of(const Diagnosis& d) {
   if (first == all.size() || unknown > all[first].probability) return {Kind::unknown, {}};
   DiagnosisVerdict verdict{Kind::effect, {first}};
   for (std::size_t k = 0; k < all.size(); ++k)
-    if (k != first && is_effect(all[k]) && all[k].explains() &&
+    if (k != first && all[k].hypothesis.is_effect() && all[k].explains() &&
         !holds(all[k].hypothesis, all[first].hypothesis) &&
         all[k].probability * kApartBy > all[first].probability)
       verdict.named.push_back(k);

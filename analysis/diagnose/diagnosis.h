@@ -43,6 +43,8 @@ struct Hypothesis {
   std::vector<std::size_t> effects;  ///< that are there, by rising index; none: calibration alone
   bool unknown = false;              ///< something that is not in the library
   double prior = 0;
+
+  bool is_effect() const { return !effects.empty() && !unknown; }
 };
 
 /// What the data say of a hypothesis.

@@ -25,8 +25,8 @@ struct DiagnosisOutcome {
   std::optional<HeldOut> held_out_calibrated, held_out_augmented;
   std::vector<NextMeasurement> next;  ///< for a group: what would tell its members apart, best first
   int rounds = 0;                     ///< of naming and simulating what was named
-  bool settled = true;                ///< the last round changed nothing, and full simulations bear out what is named
-  int simulations = 0;                ///< used
+  bool settled = true;  ///< the last round changed nothing, and full simulations bear out what is named
+  int simulations = 0;  ///< used
   std::vector<std::string> notes;
 };
 

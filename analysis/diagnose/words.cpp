@@ -63,21 +63,27 @@ std::string title_of(const ModelSpace& space, const Hypothesis& hypothesis) {
   return text;
 }
 
+// What is unknown, and the effects whose fits would explain the data but are less probable.
 std::string unknown_in_words(const ModelSpace& space, const Diagnosis& d) {
   const auto& all = d.judgements;
   const std::string missing =
       fmt::format("Something is missing that is not among the {} effects looked for", space.effects.size());
-  const auto unknown =
-      std::find_if(all.begin(), all.end(), [](const Judgement& j) { return j.hypothesis.unknown; });
-  const auto rival = std::find_if(all.begin(), all.end(), [](const Judgement& j) {
-    return !j.hypothesis.effects.empty() && j.explains();
-  });
-  if (unknown != all.end() && rival != all.end())
+  std::string rivals;
+  double most = 0;
+  for (const Judgement& j : all) {
+    if (!j.hypothesis.is_effect() || !j.explains()) continue;
+    if (most == 0) most = j.probability;
+    if (j.probability * kApartBy <= most) break;
+    rivals += fmt::format("{}{} (p {}, probability {})", rivals.empty() ? "" : "; ",
+                          name_of(space, j.hypothesis), p_compared(j.gap.p), number_text(j.probability, 2));
+  }
+  if (!rivals.empty()) {
+    const auto unknown =
+        std::find_if(all.begin(), all.end(), [](const Judgement& j) { return j.hypothesis.unknown; });
     return fmt::format(
-        "{}, with probability {}; of these, {} would explain the data by its fit (p {}), with probability "
-        "{}.",
-        missing, decimals_text(unknown->probability, 2), name_of(space, rival->hypothesis),
-        p_compared(rival->gap.p), decimals_text(rival->probability, 2));
+        "{} (probability {}). By their fits alone these would explain the data, but are less probable: {}.",
+        missing, unknown == all.end() ? "" : decimals_text(unknown->probability, 2), rivals);
+  }
   const bool pairs =
       std::any_of(all.begin(), all.end(), [](const Judgement& j) { return j.hypothesis.effects.size() > 1; });
   return fmt::format("{}: none of them explains the data{}.", missing,
@@ -151,7 +157,7 @@ std::string tested(const DiagnosisOutcome& o) {
   text += "; with its best parameters: " + gap_in_words(d.calibration.gap);
   if (d.verdict.kind == Kind::unknown) {
     for (const Judgement& j : d.judgements)
-      if (!j.hypothesis.effects.empty())
+      if (j.hypothesis.is_effect())
         return text + fmt::format("; with the best of the effects, {}: {}.", name_of(o.space, j.hypothesis),
                                   gap_in_words(j.gap));
     return text + ".";

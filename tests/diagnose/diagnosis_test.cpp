@@ -365,24 +365,44 @@ TEST(Verdict, NamesNothingThatIsLessProbableThanCalibration) {
   EXPECT_EQ(d.verdict.kind, Kind::effect);
 }
 
-// Something unknown is more probable than an effect that explains the data: that effect is not passed over.
-TEST_F(DiagnosisOf, UnknownIsSaidWithTheEffectThatWouldDo) {
+// Something unknown is more probable than effects that explain the data: these are not passed over, but for
+// one that simulations contradict.
+TEST_F(DiagnosisOf, UnknownIsSaidWithTheEffectsThatWouldDo) {
   DiagnosisOutcome o;
   o.space = world.space;
-  o.diagnosis = of(SyntheticWorld::point(0.1, 0.1, {{1, 0.6}}), 3);
+  o.diagnosis.measured = world.measure(SyntheticWorld::point(0.1, 0.1), 5, 3);
+  o.diagnosis.covariance = Eigen::MatrixXd::Identity(11, 11);
   o.nominal.mean = o.diagnosis.measured.vector();
   o.nominal.std = Eigen::VectorXd::Zero(o.nominal.mean.size());
-  const std::size_t right = o.diagnosis.verdict.named.front();
-  Judgement& best = o.diagnosis.judgements[right];
-  best.gap.p = 0.13;
-  o.diagnosis.verdict = {Kind::unknown, {}};
-  const std::string& name = world.space.effects[1].name;
-  EXPECT_THAT(
-      diagnosis_in_words(o).front(),
-      testing::HasSubstr(fmt::format("of these, {} would explain the data by its fit (p = 0.130)", name)));
+  o.diagnosis.nominal.p = o.diagnosis.calibration.gap.p = 1e-4;
+  const auto add = [&](std::vector<std::size_t> effects, bool unknown, double probability, double p) {
+    Judgement j;
+    j.hypothesis.effects = std::move(effects);
+    j.hypothesis.unknown = unknown;
+    j.probability = probability;
+    j.gap.p = p;
+    o.diagnosis.judgements.push_back(j);
+  };
+  add({}, true, 0.9, 1);
+  add({1}, false, 0.05, 0.13);
+  add({0}, false, 0.04, 0.005);
+  add({0, 1}, false, 0.0075, 0.02);
+  add({2}, false, 0.001, 0.3);
+  add({}, false, 0, 1e-4);
+  const auto said = [&] {
+    refute(o.diagnosis, 5, Gap{90, 10, 1e-9});  // says anew what is named
+    EXPECT_EQ(o.diagnosis.verdict.kind, Kind::unknown);
+    return diagnosis_in_words(o).front();
+  };
+  const auto name = [&](std::size_t effect) { return world.space.effects[effect].name; };
+  EXPECT_THAT(said(),
+              testing::HasSubstr(fmt::format("(probability 0.90). By their fits alone these would explain "
+                                             "the data, but are less probable: {} (p = 0.130, probability "
+                                             "0.050); {} and {} (p = 0.020, probability 0.0075).",
+                                             name(1), name(0), name(1))));
   for (Judgement& j : o.diagnosis.judgements)
-    if (!j.hypothesis.unknown) j.gap.p = 0.002;
-  EXPECT_THAT(diagnosis_in_words(o).front(), testing::HasSubstr("none of them explains the data"));
+    if (j.hypothesis.is_effect()) j.simulated = Judgement::Simulated::refuted;
+  EXPECT_THAT(said(), testing::HasSubstr("none of them explains the data, alone or with a second one"));
 }
 
 // A surface that is less sure of itself leaves an amplitude more open.
