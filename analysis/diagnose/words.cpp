@@ -69,21 +69,19 @@ std::string unknown_in_words(const ModelSpace& space, const Diagnosis& d) {
   const std::string missing =
       fmt::format("Something is missing that is not among the {} effects looked for", space.effects.size());
   std::string rivals;
-  double most = 0;
+  double unknown = 0, most = 0;  // probabilities; judgements stand by falling ones
   for (const Judgement& j : all) {
+    if (j.hypothesis.unknown) unknown = j.probability;
     if (!j.hypothesis.is_effect() || !j.explains()) continue;
-    if (most == 0) most = j.probability;
+    if (rivals.empty()) most = j.probability;
     if (j.probability * kApartBy <= most) break;
     rivals += fmt::format("{}{} (p {}, probability {})", rivals.empty() ? "" : "; ",
                           name_of(space, j.hypothesis), p_compared(j.gap.p), number_text(j.probability, 2));
   }
-  if (!rivals.empty()) {
-    const auto unknown =
-        std::find_if(all.begin(), all.end(), [](const Judgement& j) { return j.hypothesis.unknown; });
+  if (!rivals.empty())
     return fmt::format(
         "{} (probability {}). By their fits alone these would explain the data, but are less probable: {}.",
-        missing, unknown == all.end() ? "" : decimals_text(unknown->probability, 2), rivals);
-  }
+        missing, decimals_text(unknown, 2), rivals);
   const bool pairs =
       std::any_of(all.begin(), all.end(), [](const Judgement& j) { return j.hypothesis.effects.size() > 1; });
   return fmt::format("{}: none of them explains the data{}.", missing,

@@ -340,24 +340,22 @@ TEST_F(DiagnosisOf, WhatCannotBeSimulatedIsNotNamed) {
   EXPECT_EQ(failed->gap.chi2, chi2);
 }
 
+Judgement judged(std::vector<std::size_t> effects, bool unknown, double probability, double p) {
+  Judgement j;
+  j.hypothesis.effects = std::move(effects);
+  j.hypothesis.unknown = unknown;
+  j.probability = probability;
+  j.gap.p = p;
+  return j;
+}
+
 // Re-calibration three times as probable as the one effect that explains the data: no name, however probable
 // an effect that does not explain them.
 TEST(Verdict, NamesNothingThatIsLessProbableThanCalibration) {
   Diagnosis d;
   d.nominal.p = d.calibration.gap.p = 1e-4;
-  const auto add = [&](std::vector<std::size_t> effects, bool unknown, double probability, double p) {
-    Judgement j;
-    j.hypothesis.effects = std::move(effects);
-    j.hypothesis.unknown = unknown;
-    j.probability = probability;
-    j.gap.p = p;
-    d.judgements.push_back(j);
-  };
-  add({0}, false, 0.95, 0.005);
-  add({}, false, 0.03, 1e-4);
-  add({1}, false, 0.01, 0.02);
-  add({}, true, 0.005, 1);
-  add({2}, false, 0, 0.5);
+  d.judgements = {judged({0}, false, 0.95, 0.005), judged({}, false, 0.03, 1e-4),
+                  judged({1}, false, 0.01, 0.02), judged({}, true, 0.005, 1), judged({2}, false, 0, 0.5)};
   refute(d, 4, Gap{90, 10, 1e-9});
   EXPECT_EQ(d.verdict.kind, Kind::calibration);
   d.judgements[1].probability = 1e-4;
@@ -375,20 +373,9 @@ TEST_F(DiagnosisOf, UnknownIsSaidWithTheEffectsThatWouldDo) {
   o.nominal.mean = o.diagnosis.measured.vector();
   o.nominal.std = Eigen::VectorXd::Zero(o.nominal.mean.size());
   o.diagnosis.nominal.p = o.diagnosis.calibration.gap.p = 1e-4;
-  const auto add = [&](std::vector<std::size_t> effects, bool unknown, double probability, double p) {
-    Judgement j;
-    j.hypothesis.effects = std::move(effects);
-    j.hypothesis.unknown = unknown;
-    j.probability = probability;
-    j.gap.p = p;
-    o.diagnosis.judgements.push_back(j);
-  };
-  add({}, true, 0.9, 1);
-  add({1}, false, 0.05, 0.13);
-  add({0}, false, 0.04, 0.005);
-  add({0, 1}, false, 0.0075, 0.02);
-  add({2}, false, 0.001, 0.3);
-  add({}, false, 0, 1e-4);
+  o.diagnosis.judgements = {judged({}, true, 0.9, 1),        judged({1}, false, 0.05, 0.13),
+                            judged({0}, false, 0.04, 0.005), judged({0, 1}, false, 0.0075, 0.02),
+                            judged({2}, false, 0.001, 0.3),  judged({}, false, 0, 1e-4)};
   const auto said = [&] {
     refute(o.diagnosis, 5, Gap{90, 10, 1e-9});  // says anew what is named
     EXPECT_EQ(o.diagnosis.verdict.kind, Kind::unknown);
