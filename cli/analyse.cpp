@@ -31,8 +31,7 @@ std::optional<scree::Scenario> scenario_of(const AnalyseOptions& options) {
   if (!options.scenario.empty()) {
     if (!is_of_kind(options.scenario, scree::FileKind::scenario)) return std::nullopt;
     scree::ScenarioResult loaded = scree::load_scenario(options.scenario, options.overrides, asset_dir());
-    for (const std::string& warning : loaded.warnings) fmt::print(stderr, "warning: {}\n", warning);
-    if (!nothing_wrong(loaded.errors)) return std::nullopt;
+    if (!nothing_wrong(loaded.errors, loaded.warnings)) return std::nullopt;
     return std::move(loaded.scenario);
   }
   scree::Scenario scenario;

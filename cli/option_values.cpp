@@ -69,7 +69,9 @@ bool is_of_kind(const std::filesystem::path& file, scree::FileKind wanted) {
   return why.empty();
 }
 
-bool nothing_wrong(const std::vector<scree::ScenarioError>& errors) {
+bool nothing_wrong(const std::vector<scree::ScenarioError>& errors,
+                   const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
   for (const scree::ScenarioError& error : errors) fmt::print(stderr, "{}\n", error.text());
   return errors.empty();
 }

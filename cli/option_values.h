@@ -27,8 +27,9 @@ std::optional<std::pair<double, double>> pair_in(const std::string& option, cons
 /// False, with a message, if the file is one of another kind.
 bool is_of_kind(const std::filesystem::path& file, scree::FileKind wanted);
 
-/// False, with a line each, if a file that was read has errors.
-bool nothing_wrong(const std::vector<scree::ScenarioError>& errors);
+/// False, with a line each, if a file that was read has errors; its warnings get a line each before.
+bool nothing_wrong(const std::vector<scree::ScenarioError>& errors,
+                   const std::vector<std::string>& warnings = {});
 
 /// True, with a message, if two of these names are one file that is there.
 bool given_twice(const std::vector<std::filesystem::path>& files);

@@ -69,8 +69,7 @@ int run_reproduce(const ReproduceOptions& options) {
   const std::vector<fs::path> files = case_files(options.cases);
   if (files.empty()) return kBadInput;
   const scree::SweepResult loaded = scree::load_cases(files, options.seeds, asset_dir());
-  for (const std::string& warning : loaded.warnings) fmt::print(stderr, "warning: {}\n", warning);
-  if (!nothing_wrong(loaded.errors)) return kBadInput;
+  if (!nothing_wrong(loaded.errors, loaded.warnings)) return kBadInput;
   const scree::Sweep& sweep = loaded.sweep;
   if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
 

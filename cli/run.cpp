@@ -58,8 +58,7 @@ struct Plan {
 
 // False, with messages, if the scenario cannot be run.
 bool check(const scree::ScenarioResult& loaded) {
-  for (const std::string& warning : loaded.warnings) fmt::print(stderr, "warning: {}\n", warning);
-  if (!nothing_wrong(loaded.errors)) return false;
+  if (!nothing_wrong(loaded.errors, loaded.warnings)) return false;
   if (loaded.scenario.output.trajectory && !loaded.scenario.effects.empty() &&
       scree::effective_model(loaded.scenario).changes.breakage.on()) {
     fmt::print(stderr,

@@ -113,8 +113,7 @@ int run_validate(const std::filesystem::path& file, const std::vector<std::strin
       break;
   }
   const scree::ScenarioResult result = scree::load_scenario(file, overrides, asset_dir());
-  for (const std::string& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning);
-  if (!nothing_wrong(result.errors)) return kBadInput;
+  if (!nothing_wrong(result.errors, result.warnings)) return kBadInput;
 
   const scree::Scenario& scenario = result.scenario;
   const scree::Grading grading = scree::effective_model(scenario).grading;

@@ -13,7 +13,7 @@
 #include "analysis/results/outputs.h"
 #include "cli/ensemble/run_request.h"
 #include "sim/io/text_file.h"
-#include "sim/material/input_bytes.h"
+#include "sim/material/input_text.h"
 
 namespace scree {
 namespace {
@@ -29,37 +29,57 @@ const char* name_of(RunState state) {
 }
 
 std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : c == '\n' ? " " : std::string(1, c);
+  for (const char c : text) out += c == '"' ? "\"\"" : c == '\n' || c == '\r' ? " " : std::string(1, c);
   return out + "\"";
 }
 
-std::vector<std::string> csv_fields(const std::string& line) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (std::size_t k = 0; k < line.size(); ++k) {
-    const char c = line[k];
-    if (quoted && c == '"' && k + 1 < line.size() && line[k + 1] == '"')
-      fields.back() += line[++k];
-    else if (c == '"')
-      quoted = !quoted;
-    else if (c == ',' && !quoted)
-      fields.emplace_back();
-    else
-      fields.back() += c;
-  }
-  return fields;
-}
-
-template <class Number>
-std::optional<Number> number(const std::string& text) {
-  Number value{};
+std::optional<std::uint64_t> seed_in(const std::string& text) {
+  std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  if constexpr (std::is_floating_point_v<Number>)
-    if (!std::isfinite(value)) return std::nullopt;
   return value;
+}
+
+// Throws if the first line of a table says that it is of another sweep.
+void check_sweep(const Sweep& sweep, const fs::path& file) {
+  std::istringstream in(read_input_text(file));
+  std::string line;
+  std::getline(in, line);
+  if (!line.empty() && line.back() == '\r') line.pop_back();
+  if (line.starts_with(kTableOf) && line.substr(kTableOf.size()) != sweep.name)
+    throw FileError(
+        file, 1,
+        fmt::format("these are runs of sweep {}, not of {}", line.substr(kTableOf.size()), sweep.name));
+}
+
+// Throws if the columns are not those of a table of this sweep.
+void check_columns(const Sweep& sweep, const DelimitedTable& table) {
+  std::vector<std::string> expected = sweep.parameters;
+  expected.insert(expected.end(), {"seed", "state", "version", "wall_seconds"});
+  const std::vector<std::string>& header = table.header();
+  if (header.size() < expected.size() + 1 || !std::equal(expected.begin(), expected.end(), header.begin()) ||
+      header.back() != "message")
+    table.fail(fmt::format("not a table of this sweep: its columns begin with {} and end with message",
+                           fmt::join(expected, ",")));
+}
+
+// What this row says of a run; none if it was not run to its end.
+std::optional<StoredResult> run_in(const DelimitedTable& table, std::size_t state) {
+  const std::string& name = table.field(state);
+  if (name == "not run" || name == "running") return std::nullopt;
+  if (name != "done" && name != "failed")
+    table.fail(fmt::format("state '{}' is none of done, failed, running, not run", name));
+  StoredResult run;
+  run.state = name == "done" ? RunState::done : RunState::failed;
+  run.version = table.field(state + 1);
+  run.wall_seconds = table.number(state + 2).value_or(0);
+  const std::size_t message = table.header().size() - 1;
+  run.message = table.field(message);
+  for (std::size_t k = state + 3; k < message; ++k)
+    if (const auto value = table.number(k)) run.outputs[table.header()[k]] = *value;
+  return run;
 }
 
 // `run`: the numbers of some run.
@@ -152,78 +172,35 @@ void write_sweep_csv(const Sweep& sweep, const std::vector<PointResults>& points
 }
 
 std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const fs::path& file, bool refuse_others) {
-  std::istringstream in(read_input_text(file));
+  check_sweep(sweep, file);
+  DelimitedTable table(file);
+  check_columns(sweep, table);
   std::vector<PointResults> points;
   for (const SweepPoint& point : sweep.points)
     points.push_back({&point, point.scenario.seeds,
                       std::vector<std::optional<StoredResult>>(point.scenario.seeds.size())});
-
-  std::string line;
-  int at_line = 0;
-  const auto fail = [&](const std::string& what) { throw FileError(file, at_line, what); };
-  std::vector<std::string> header;
-  const std::size_t first = sweep.parameters.size();
-  while (std::getline(in, line)) {
-    ++at_line;
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.starts_with(kTableOf) && line.substr(kTableOf.size()) != sweep.name)
-      fail(fmt::format("these are runs of sweep {}, not of {}", line.substr(kTableOf.size()), sweep.name));
-    if (line.empty() || line.front() == '#') continue;
-    const std::vector<std::string> fields = csv_fields(line);
-    if (header.empty()) {
-      header = fields;
-      std::vector<std::string> expected = sweep.parameters;
-      expected.insert(expected.end(), {"seed", "state", "version", "wall_seconds"});
-      if (header.size() < expected.size() + 1 ||
-          !std::equal(expected.begin(), expected.end(), header.begin()) || header.back() != "message")
-        fail(fmt::format("not a table of this sweep: its columns begin with {} and end with message",
-                         fmt::join(expected, ",")));
-      for (auto name = header.begin(); name != header.end(); ++name)
-        if (std::find(header.begin(), name, *name) != name)
-          fail(fmt::format("the column {} stands twice", *name));
-      continue;
-    }
-    if (fields.size() != header.size())
-      fail(fmt::format("{} columns, {} are needed", fields.size(), header.size()));
-    const auto seed = number<std::uint64_t>(fields[first]);
-    if (!seed) fail(fmt::format("seed '{}' is no integer", fields[first]));
-    if (fields[first + 1] == "not run" || fields[first + 1] == "running") continue;
-    StoredResult run;
-    if (fields[first + 1] != "done" && fields[first + 1] != "failed")
-      fail(fmt::format("state '{}' is none of done, failed, running, not run", fields[first + 1]));
-    run.state = fields[first + 1] == "done" ? RunState::done : RunState::failed;
-    run.version = fields[first + 2];
-    if (const std::string& text = fields[first + 3]; !text.empty()) {
-      const auto seconds = number<double>(text);
-      if (!seconds) fail(fmt::format("wall_seconds '{}' is no number", text));
-      run.wall_seconds = *seconds;
-    }
-    run.message = fields.back();
-    for (std::size_t k = first + 4; k + 1 < fields.size(); ++k) {
-      if (fields[k].empty()) continue;
-      const auto value = number<double>(fields[k]);
-      if (!value) fail(fmt::format("{} '{}' is no number", header[k], fields[k]));
-      run.outputs[header[k]] = *value;
-    }
+  const std::size_t seed_column = sweep.parameters.size();
+  while (table.next()) {
+    const auto seed = seed_in(table.field(seed_column));
+    if (!seed) table.fail(fmt::format("seed '{}' is no integer", table.field(seed_column)));
+    const std::optional<StoredResult> run = run_in(table, seed_column + 1);
+    if (!run) continue;
+    std::vector<std::string> values;
+    for (std::size_t k = 0; k < seed_column; ++k) values.push_back(table.field(k));
     bool known = false;
     for (PointResults& point : points) {
-      if (!std::equal(point.point->values.begin(), point.point->values.end(), fields.begin(), same_value))
-        continue;
+      if (!std::equal(values.begin(), values.end(), point.point->values.begin(), same_value)) continue;
       known = true;
       const auto found = std::find(point.seeds.begin(), point.seeds.end(), *seed);
       if (found == point.seeds.end()) continue;
       auto& place = point.runs[static_cast<std::size_t>(found - point.seeds.begin())];
       if (place)
-        fail(fmt::format("the run of seed {} at {} stands twice", *seed,
-                         fmt::join(point.point->values, ", ")));
+        table.fail(fmt::format("the run of seed {} at {} stands twice", *seed, fmt::join(values, ", ")));
       place = run;
     }
     if (!known && refuse_others)
-      fail(fmt::format("{} is no point of sweep {}",
-                       fmt::join(fields.begin(), fields.begin() + static_cast<std::ptrdiff_t>(first), ", "),
-                       sweep.name));
+      table.fail(fmt::format("{} is no point of sweep {}", fmt::join(values, ", "), sweep.name));
   }
-  if (header.empty()) fail("there is no header");
   return points;
 }
 

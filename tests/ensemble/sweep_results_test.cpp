@@ -117,9 +117,9 @@ TEST_F(SweepTable, SaysWhatIsWrong) {
   EXPECT_THAT(reading("mu,mu_r,angle\n"),
               ThrowsMessage<std::runtime_error>(HasSubstr(":1: not a table of this sweep")));
   EXPECT_THAT(reading(header + "0.2,0.1,7,done,1,5,20\n"),
-              ThrowsMessage<std::runtime_error>(HasSubstr(":2: 7 columns, 8 are needed")));
+              ThrowsMessage<std::runtime_error>(HasSubstr(":2: 7 fields, but the header has 8")));
   EXPECT_THAT(reading(header + "0.2,0.1,7,done,1,5,steep,\n"),
-              ThrowsMessage<std::runtime_error>(HasSubstr("angle_deg 'steep' is no number")));
+              ThrowsMessage<std::runtime_error>(HasSubstr("angle_deg: 'steep' is no number")));
   EXPECT_THAT(reading(header + "0.2,0.1,7,lost,1,5,20,\n"),
               ThrowsMessage<std::runtime_error>(HasSubstr("state 'lost'")));
   EXPECT_THAT(reading(""), ThrowsMessage<std::runtime_error>(HasSubstr("the file is empty")));

@@ -62,7 +62,7 @@ TEST_F(EquivalenceTable, BadTablesAreRefused) {
   EXPECT_THAT(reading("mu,mu_r\n"), ThrowsMessage<std::runtime_error>(HasSubstr(":1: the header must be")));
   EXPECT_THAT(reading(kHeader), ThrowsMessage<std::runtime_error>(HasSubstr("no rows")));
   EXPECT_THAT(reading(kHeader + "0.1,0.1,0.4,0.1\n"),
-              ThrowsMessage<std::runtime_error>(HasSubstr(":2: 4 columns, 7 are needed")));
+              ThrowsMessage<std::runtime_error>(HasSubstr(":2: 4 fields, but the header has 7")));
   EXPECT_THAT(reading(kHeader + "0.1,0.1,0.4,-0.1,0,20,20\n"),
               ThrowsMessage<std::runtime_error>(HasSubstr("'-0.1' is no number of 0 or more")));
   EXPECT_THAT(reading(kHeader + "0.1,0.1,0.4,0.1,,20,20\n"),
