@@ -32,8 +32,6 @@ struct EnsembleOptions {
   int jobs = 0;                 ///< runs side by side, threads of fewer; 0: as many as cores
   bool again = false;           ///< try runs that failed before again
   double checkpoint_minutes = kCheckpointMinutes;  ///< of each run; 0: none
-
-  int cores() const;  ///< jobs, or as many as there are
 };
 
 struct SweepOptions {

@@ -114,7 +114,7 @@ int run_diagnose(const DiagnoseOptions& options) {
       return kBadInput;
     }
   scree::DiagnosisSession session(loaded.model, scree::join_datasets(datasets), options.without, asset_dir(),
-                                  options.ensemble.cores());
+                                  cores_or(options.ensemble.jobs));
   if (!options.plan && !options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
   const auto store = open_store(options.ensemble.store, options.plan ? StoreUse::plan : StoreUse::change);
   if (!store) return kBadInput;

@@ -4,8 +4,8 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <thread>
 
+#include "cli/option_values.h"
 #include "cli/progress.h"
 #include "scree_version.h"
 #include "sim/scene/scenario_values.h"
@@ -14,10 +14,6 @@ namespace fs = std::filesystem;
 
 namespace {
 constexpr double kTerminalInterval = 0.5, kPlainInterval = 30;  // s between lines of progress
-}
-
-int EnsembleOptions::cores() const {
-  return jobs > 0 ? jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
 std::unique_ptr<scree::ResultsStore> open_store(const fs::path& named, StoreUse use) {
@@ -45,7 +41,7 @@ std::unique_ptr<scree::ResultsStore> open_store(const fs::path& named, StoreUse 
 
 scree::EnsembleProgress run_with_progress(const std::vector<scree::RunRequest>& runs,
                                           scree::ResultsStore& store, const EnsembleOptions& options) {
-  scree::LocalProcesses processes(options.cores(), options.checkpoint_minutes);
+  scree::LocalProcesses processes(cores_or(options.jobs), options.checkpoint_minutes);
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const auto start = std::chrono::steady_clock::now();
   double shown = -1e9;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <thread>
 
 #include "analysis/results/output_units.h"
 #include "sim/material/input_text.h"
@@ -23,6 +24,10 @@ std::optional<double> length_of(std::string_view text) {
 }
 
 }  // namespace
+
+int cores_or(int asked) {
+  return asked > 0 ? asked : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
 
 std::optional<double> length_in(const std::string& option, const std::string& text) {
   const auto length = length_of(text);

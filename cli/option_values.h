@@ -16,6 +16,9 @@ struct ScenarioError;
 /// A number from low to high. CLI::Range lets nan pass.
 CLI::Validator within(double low, double high);
 
+/// Threads or jobs: as many as are asked for, or as the machine has cores where 0 are.
+int cores_or(int asked);
+
 /// Metres of "0.5m", "50cm"; none, with a message that begins with the option's name, if it is no length.
 std::optional<double> length_in(const std::string& option, const std::string& text);
 /// Metres a pixel of "1.2cm/px".

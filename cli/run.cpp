@@ -54,6 +54,8 @@ struct Plan {
   bool resume = false, summary_only = false;
   RunRecord record;
   std::unique_ptr<FolderLock> lock;
+
+  bool checkpoints() const { return record.checkpoint_minutes > 0; }
 };
 
 // False, with messages, if the scenario cannot be run.
@@ -155,6 +157,100 @@ void forget_checkpoints(const Plan& plan) {
   }
 }
 
+// The folder as it is before the first step.
+void begin_folder(const Plan& plan) {
+  forget_checkpoints(plan);  // of another run, with --force
+  for (const std::uint64_t seed : plan.scenario.seeds)
+    Checkpoints::remove_pile_from(scree::seed_folder(plan.out, seed));
+  scree::write_text_file(plan.out / "scenario.yaml", plan.scenario.resolved_yaml);
+  if (plan.checkpoints()) write_record(plan.out, plan.record);
+}
+
+// Every seed, side by side on `threads` threads; when the user ends the run, no further one is begun.
+std::vector<SeedRun> run_seeds(const Plan& plan, int threads) {
+  const scree::Scenario& scenario = plan.scenario;
+  std::vector<SeedRun> runs(scenario.seeds.size());
+  for (std::size_t k = 0; k < runs.size(); ++k) runs[k].seed = scenario.seeds[k];
+  const int side_by_side = std::min<int>(threads, static_cast<int>(runs.size()));
+  SeedSettings settings;
+  settings.threads = std::max(1, threads / side_by_side);
+  settings.checkpoint.program = plan.record.program;
+  settings.checkpoint.scenario = plan.record.scenario;
+  settings.checkpoint_minutes = plan.record.checkpoint_minutes;
+  settings.resume = plan.resume;
+  settings.keep_finished = runs.size() > 1;
+  if (plan.record.keep_pile || !plan.pile.empty()) settings.pile = pile_hash(scenario);
+  settings.keep_pile = plan.record.keep_pile;
+  scree::ProgressDisplay display(scenario.seeds);
+  {
+    std::atomic<std::size_t> next{0};
+    std::vector<std::jthread> workers;
+    for (int w = 0; w < side_by_side; ++w)
+      workers.emplace_back([&] {
+        for (std::size_t k = next++; k < runs.size() && !interrupted; k = next++) {
+          SeedSettings own = settings;
+          own.folder = scree::seed_folder(plan.out, runs[k].seed);
+          if (!plan.pile.empty()) own.read_pile = scree::seed_folder(plan.pile, runs[k].seed);
+          run_seed(scenario, runs[k], own, display, k);
+        }
+      });
+  }
+  display.finish();
+  return runs;
+}
+
+/// What the seeds came to.
+struct EndedSeeds {
+  std::vector<scree::SeedResult> results;
+  std::vector<std::string> notes, failures;
+  int code = kOk;
+  bool worth_resuming = false, keep_checkpoints = false;
+};
+
+// Takes the results out of `runs`, and says what failed.
+EndedSeeds take_results(const Plan& plan, std::vector<SeedRun>& runs) {
+  EndedSeeds ended;
+  const auto any = [&](bool SeedRun::*what) {
+    return std::any_of(runs.begin(), runs.end(), [&](const SeedRun& run) { return run.*what; });
+  };
+  ended.worth_resuming =
+      (plan.checkpoints() || plan.resume) && (interrupted || any(&SeedRun::worth_resuming));
+  ended.keep_checkpoints = ended.worth_resuming || any(&SeedRun::does_not_fit);
+  for (SeedRun& run : runs) {
+    if (!run.failure.empty()) {
+      ended.code = std::max<int>(ended.code, run.blew_up        ? kWatchFailed
+                                             : run.does_not_fit ? kBadInput
+                                                                : kFailed);
+      ended.failures.push_back(fmt::format("seed {}: {}", run.seed, run.failure));
+      fmt::print(stderr, "{}\n", ended.failures.back());
+    }
+    ended.notes.insert(ended.notes.end(), run.notes.begin(), run.notes.end());
+    if (run.result) ended.results.push_back(std::move(*run.result));
+    if (!run.result && run.failure.empty())
+      ended.notes.push_back(fmt::format("seed {} was not run: the user ended the run", run.seed));
+  }
+  // An unfinished pile must not be averaged with finished ones.
+  const auto unfinished = [](const scree::SeedResult& r) { return r.interrupted; };
+  if (!std::all_of(ended.results.begin(), ended.results.end(), unfinished)) {
+    for (const scree::SeedResult& r : ended.results)
+      if (unfinished(r))
+        ended.notes.push_back(fmt::format(
+            "seed {} was ended by the user and is left out; its frames are in seed_{}", r.seed, r.seed));
+    std::erase_if(ended.results, unfinished);
+  }
+  return ended;
+}
+
+void write_results(const Plan& plan, const scree::RunResult& result) {
+  scree::write_summary(result, plan.out / "summary.json");
+  scree::write_sections_csv(result, plan.out / "sections.csv");
+  scree::write_conductivity_csv(result, plan.out / "ksat.csv");
+  if (plan.summary_only) return;
+  scree::SceneFacts scene;
+  if (const scree::BenchSpec* bench = bench_of(plan.scenario)) scene.bench_slope = bench->slope_deg;
+  scree::write_report(result, plan.out, scene);
+}
+
 }  // namespace
 
 int run_run(const RunOptions& options) {
@@ -162,108 +258,29 @@ int run_run(const RunOptions& options) {
   const std::optional<Plan> made = make_plan(options);
   if (!made) return kBadInput;
   const Plan& plan = *made;
-  const scree::Scenario& scenario = plan.scenario;
-  const fs::path& out = plan.out;
-  const bool checkpoints = plan.record.checkpoint_minutes > 0;
-  if (!plan.resume) {
-    forget_checkpoints(plan);  // of another run, with --force
-    for (const std::uint64_t seed : scenario.seeds)
-      Checkpoints::remove_pile_from(scree::seed_folder(out, seed));
-    scree::write_text_file(out / "scenario.yaml", scenario.resolved_yaml);
-    if (checkpoints) write_record(out, plan.record);
-  }
-
-  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  const int threads = options.threads > 0 ? options.threads : cores;
-  const int side_by_side = std::min<int>(threads, static_cast<int>(scenario.seeds.size()));
-  std::vector<SeedRun> runs(scenario.seeds.size());
-  for (std::size_t k = 0; k < runs.size(); ++k) runs[k].seed = scenario.seeds[k];
-  {
-    scree::ProgressDisplay display(scenario.seeds);
-    std::atomic<std::size_t> next{0};
-    std::vector<std::jthread> workers;
-    SeedSettings settings;
-    settings.threads = std::max(1, threads / side_by_side);
-    settings.checkpoint.program = plan.record.program;
-    settings.checkpoint.scenario = plan.record.scenario;
-    settings.checkpoint_minutes = plan.record.checkpoint_minutes;
-    settings.resume = plan.resume;
-    settings.keep_finished = runs.size() > 1;
-    if (plan.record.keep_pile || !plan.pile.empty()) settings.pile = pile_hash(scenario);
-    settings.keep_pile = plan.record.keep_pile;
-    for (int w = 0; w < side_by_side; ++w)
-      workers.emplace_back([&] {
-        for (std::size_t k = next++; k < runs.size() && !interrupted; k = next++) {
-          SeedSettings own = settings;
-          own.folder = scree::seed_folder(out, runs[k].seed);
-          if (!plan.pile.empty()) own.read_pile = scree::seed_folder(plan.pile, runs[k].seed);
-          run_seed(scenario, runs[k], own, display, k);
-        }
-      });
-    workers.clear();
-    display.finish();
-  }
-  const bool worth_resuming = (checkpoints || plan.resume) &&
-                              (interrupted || std::any_of(runs.begin(), runs.end(), [](const SeedRun& run) {
-                                 return run.worth_resuming;
-                               }));
-  const bool keep_checkpoints =
-      worth_resuming ||
-      std::any_of(runs.begin(), runs.end(), [](const SeedRun& run) { return run.does_not_fit; });
-  const auto say_how_to_resume = [&] {
-    if (worth_resuming) fmt::print(stderr, "to go on: scree run --resume {}\n", out.string());
+  if (!plan.resume) begin_folder(plan);
+  std::vector<SeedRun> runs = run_seeds(plan, cores_or(options.threads));
+  EndedSeeds ended = take_results(plan, runs);
+  const auto end = [&](int code) {
+    if (ended.worth_resuming) fmt::print(stderr, "to go on: scree run --resume {}\n", plan.out.string());
+    if (!ended.keep_checkpoints) forget_checkpoints(plan);
+    return interrupted ? kInterrupted : code;
   };
-
-  std::vector<scree::SeedResult> results;
-  std::vector<std::string> notes, failures;
-  int code = kOk;
-  for (SeedRun& run : runs) {
-    if (!run.failure.empty()) {
-      code = std::max<int>(code, run.blew_up ? kWatchFailed : run.does_not_fit ? kBadInput : kFailed);
-      fmt::print(stderr, "seed {}: {}\n", run.seed, run.failure);
-      failures.push_back(fmt::format("seed {}: {}", run.seed, run.failure));
-    }
-    notes.insert(notes.end(), run.notes.begin(), run.notes.end());
-    if (run.result) results.push_back(std::move(*run.result));
-    if (!run.result && run.failure.empty())
-      notes.push_back(fmt::format("seed {} was not run: the user ended the run", run.seed));
-  }
-  // An unfinished pile must not be averaged with finished ones.
-  const auto unfinished = [](const scree::SeedResult& r) { return r.interrupted; };
-  if (!std::all_of(results.begin(), results.end(), unfinished)) {
-    for (const scree::SeedResult& r : results)
-      if (unfinished(r))
-        notes.push_back(fmt::format(
-            "seed {} was ended by the user and is left out; its frames are in seed_{}", r.seed, r.seed));
-    std::erase_if(results, unfinished);
-  }
-  if (results.empty()) {
-    fmt::print(stderr, "no seed came to a result; what was written is in {}\n", out.string());
-    say_how_to_resume();
-    if (!keep_checkpoints) forget_checkpoints(plan);
-    return interrupted ? kInterrupted : std::max<int>(code, kFailed);
+  if (ended.results.empty()) {
+    fmt::print(stderr, "no seed came to a result; what was written is in {}\n", plan.out.string());
+    return end(std::max<int>(ended.code, kFailed));
   }
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   scree::RunResult result =
-      scree::put_together(scenario, std::move(results), std::move(notes),
+      scree::put_together(plan.scenario, std::move(ended.results), std::move(ended.notes),
                           scree::read_reference(asset_dir() / "reference" / "results.csv"), wall);
   // To stderr as well: a sweep quotes it.
   for (const std::string& failure : result.failures) fmt::print(stderr, "{}\n", failure);
-  if (!result.failures.empty()) code = kWatchFailed;
-  result.failures.insert(result.failures.begin(), failures.begin(), failures.end());
-  scree::write_summary(result, out / "summary.json");
-  scree::write_sections_csv(result, out / "sections.csv");
-  scree::write_conductivity_csv(result, out / "ksat.csv");
-  if (!plan.summary_only) {
-    scree::SceneFacts scene;
-    if (const scree::BenchSpec* bench = scree::bench_of(scenario)) scene.bench_slope = bench->slope_deg;
-    scree::write_report(result, out, scene);
-  }
-
+  const int code = result.failures.empty() ? ended.code : static_cast<int>(kWatchFailed);
+  result.failures.insert(result.failures.begin(), ended.failures.begin(), ended.failures.end());
+  write_results(plan, result);
   scree::print_result(result);
   fmt::print("\n{}: {}\n", plan.summary_only ? "summary" : "report",
-             (out / (plan.summary_only ? "summary.json" : "report.html")).string());
-  say_how_to_resume();
-  if (!keep_checkpoints) forget_checkpoints(plan);
-  return interrupted ? kInterrupted : code;
+             (plan.out / (plan.summary_only ? "summary.json" : "report.html")).string());
+  return end(code);
 }
