@@ -149,13 +149,20 @@ SCREE_INLINE Vector carried_on(const Vector& memory, const Vector& normal, Real 
   return whole * kept;
 }
 
+/// Force of the normal dashpot over the speed of closing, N s/m.
+template <class Real>
+SCREE_INLINE Real normal_dashpot(const ContactLaw& law, const BasicContactStiffness<Real>& k,
+                                 Real reduced_mass) {
+  return 2.0 * law.beta_n * root(reduced_mass * k.kn);
+}
+
 /// Normal force, with its dashpot; `opening`: speed of 2 against 1 along the normal, m/s.
 template <class Real>
 SCREE_INLINE Real normal_force(const ContactLaw& law, const BasicContactStiffness<Real>& k, Real overlap,
                                Real reduced_mass, Real opening) {
   const Real spring = k.kn * overlap;
   if (law.beta_n <= 0.0) return spring;
-  return larger(spring - 2.0 * law.beta_n * root(reduced_mass * k.kn) * opening, Real{});
+  return larger(spring - normal_dashpot(law, k, reduced_mass) * opening, Real{});
 }
 
 /// Force of the shear dashpot over the slip velocity, N s/m; it acts while the contact sticks.

@@ -41,6 +41,11 @@ struct Spheres {
   }
   /// Of the grain that sphere i belongs to, kg.
   double grain_mass(int i) const { return (partner.empty() || partner[i] < 0 ? 1 : 2) * velocity[i].w; }
+  /// Of the grains of sphere i and of another, which may be fixed, kg.
+  double reduced_mass(int i, int other) const {
+    const double m1 = grain_mass(i), m2 = other < movable ? grain_mass(other) : 1e300;
+    return m1 / (1 + m1 / m2);
+  }
   /// The first sphere of a grain, or one that is a grain alone.
   bool leads(int i) const { return partner.empty() || partner[i] < 0 || id[i] < id[partner[i]]; }
   /// A flag of one sphere of a clump holds for the other, too.

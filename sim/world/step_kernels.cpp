@@ -183,12 +183,7 @@ SCREE_INLINE void compute(const StepView& view, BlockWork& work, const FourConta
   motion.twist = (m.spin1 + m.spin2).dot(n) * 0.5f;
   motion.dt = view.last_dt;
   if (view.law.has_dashpots()) {
-    Lanes m1, m2;
-    for (int k = 0; k < kLanes; ++k) {
-      m1[k] = s.grain_mass(four.first[k]);
-      m2[k] = four.second[k] < s.movable ? s.grain_mass(four.second[k]) : 1e300;
-    }
-    motion.reduced_mass = m1 / (one + m1 / m2);
+    for (int k = 0; k < kLanes; ++k) motion.reduced_mass[k] = s.reduced_mass(four.first[k], four.second[k]);
   } else {
     motion.reduced_mass = zero;
   }

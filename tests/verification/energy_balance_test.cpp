@@ -274,6 +274,18 @@ TEST(EnergyBalance, ClosesWithEveryEffect) {
       {"dashpots",
        [](WorldSettings& s) { s.material.normal_damping_ratio = s.material.shear_damping_ratio = 0.2; },
        [](const EnergyBalance& b) { return b.account.losses.dashpots; }},
+      {"dashpots at critical damping alone",
+       [](WorldSettings& s) {
+         s.material.normal_damping_ratio = s.material.shear_damping_ratio = 1;
+         s.material.local_damping = 0;
+       },
+       [](const EnergyBalance& b) { return b.account.losses.dashpots; }},
+      {"a shear dashpot of twice that",
+       [](WorldSettings& s) {
+         s.material.shear_damping_ratio = 2;
+         s.material.local_damping = 0;
+       },
+       [](const EnergyBalance& b) { return b.account.losses.dashpots; }},
       {"vibration", [](WorldSettings& s) { s.vibration.amplitude = 0.5; },
        [](const EnergyBalance& b) { return b.account.shaking; }},
       {"breakage",

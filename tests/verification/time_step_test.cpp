@@ -1,5 +1,6 @@
 // The stable step follows the contacts that a sphere has.
 #include <algorithm>
+#include <cmath>
 
 #include "tests/verification/scene.h"
 
@@ -30,6 +31,50 @@ TEST(TimeStep, IsThatOfTheContactsOfASphere) {
       settings.time_step_safety * std::sqrt(std::min(mass / (2 * kn + 4 * ks), inertia / (4 * turning)));
   world.advance_to(20 * expected);
   EXPECT_NEAR(world.statistics().time_step_max, expected, 1e-3 * expected);
+}
+
+// Restitution of a dashpot that never pulls (Schwager & Poeschel 2007, eq. 21), b its share of critical
+// damping.
+double restitution(double b) {
+  if (b < 1) {
+    const double root = std::sqrt(1 - b * b);
+    return std::exp(-b / root * std::atan2(2 * b * root, 2 * b * b - 1));
+  }
+  if (b == 1) return std::exp(-2.0);
+  const double root = std::sqrt(b * b - 1);
+  return std::exp(-b / root * std::log((b + root) / (b - root)));
+}
+
+// What two equal spheres leave of the speed at which they meet, at the step that the engine takes: mean over
+// places between two steps where they first touch.
+double simulated_restitution(double b) {
+  constexpr int kPlaces = 20;
+  constexpr double kRadius = 0.1, kSpeed = 0.5;
+  double sum = 0;
+  for (int k = 0; k < kPlaces; ++k) {
+    WorldSettings settings = weightless(0);
+    settings.material.normal_damping_ratio = b;
+    settings.sleep = false;
+    RrlinearWorld world(settings);
+    const double apart = 1.5 * kRadius + 0.01 * kRadius * k;
+    world.add_spheres(
+        {ball({-apart, 0, 0}, kRadius, {kSpeed, 0, 0}), ball({apart, 0, 0}, kRadius, {-kSpeed, 0, 0})});
+    world.advance_to(1);
+    sum += velocity_of(world, 1).x() / kSpeed / kPlaces;
+  }
+  return sum;
+}
+
+// The dashpot sees the velocity half a step late. The engine shortens its step, so that what it says of any
+// damping is within a twentieth of the speed of theory, and more damping is more.
+TEST(TimeStep, DashpotsShortenIt) {
+  double before = 1;
+  for (const double b : {0.1, 0.3, 0.5, 0.8, 1.0, 1.5, 2.0}) {
+    const double e = simulated_restitution(b);
+    EXPECT_NEAR(e, restitution(b), 0.05) << b;
+    EXPECT_LT(e, before) << b;
+    before = e;
+  }
 }
 
 }  // namespace
