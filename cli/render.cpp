@@ -73,7 +73,9 @@ scree::RockScene scene_of(const RenderOptions& options, const scree::SceneSettin
   if (!slope) {
     double top = 0;
     for (const scree::Grain& grain : read.snapshot.grains) top = std::max(top, grain.position.z());
-    slope = scree::slope_angle(scree::slope_profile(read.snapshot.grains), top);
+    if (top > 0)
+      if (const auto line = scree::slope_line(scree::slope_profile(read.snapshot.grains, top), top))
+        slope = line->angle;
     if (!slope)
       throw scree::FileError(options.snapshot, 0,
                              "shows no slope along x; say at which angle it is seen: --slope 37");

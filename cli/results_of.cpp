@@ -151,8 +151,8 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
                                   static_cast<int>(dump_points(scenario).size()), 4, measured);
       analyse_inside_of(scenario, *bench, dumped, r);
     }
-    r.profile = slope_profile(r.final_state.grains);
-    r.slope_angle = slope_angle(r.profile, bench->height);
+    r.profile = slope_profile(r.final_state.grains, bench->height);
+    if (const auto line = slope_line(r.profile, bench->height)) r.slope_angle = line->angle;
   } else if (std::holds_alternative<BucketDump>(scenario.experiment)) {
     try {
       const HalfCone cone = analyse_half_cone(r.final_state.grains, dumped_until(last), measured);
@@ -196,6 +196,10 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
     lost += s.lost_mass, lost_count += s.lost_particles, mass += s.mass;
     squeezed += s.squeezed_into_walls, crowded += s.crowded_contacts;
     if (!s.sections.empty()) left_out += s.sections.front().mass_outside;
+    if (bench_of(scenario) && !s.slope_angle)
+      result.notes.push_back(fmt::format(
+          "seed {}: no slope angle; too little of the pile's surface lies between {:g} and {:g} m", s.seed,
+          kSlopeLow * result.bench_height, kSlopeHigh * result.bench_height));
     if (s.interrupted)
       result.notes.push_back(fmt::format("seed {} was ended by the user: its pile is not finished", s.seed));
     else if (std::holds_alternative<BucketDump>(scenario.experiment) && s.sections.empty())

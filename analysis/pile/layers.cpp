@@ -24,13 +24,11 @@ using Grains = std::vector<const Grain*>;
 
 double surface_slope(const std::vector<Grain>& pile, const VerticalSection& section) {
   std::vector<Grain> about_axis;
-  for (Grain grain : pile) {
-    grain.position.y() -= section.y0;
-    if (std::abs(grain.position.y()) <= section.half_width) about_axis.push_back(grain);
-  }
-  const auto profile = slope_profile(about_axis, section.half_width, section.cell);
-  const double angle = slope_angle(profile, section.bench->height).value_or(section.bench->slope_deg);
-  return angle > 0 && angle < 90 ? angle : section.bench->slope_deg;
+  for (const Grain& grain : pile)
+    if (std::abs(grain.position.y() - section.y0) <= section.half_width) about_axis.push_back(grain);
+  const double height = section.bench->height;
+  const auto line = slope_line(slope_profile(about_axis, height), height);
+  return line && line->angle > 0 ? line->angle : section.bench->slope_deg;
 }
 
 /// The slope as an axis down its surface from the crest and one normal to it, m.

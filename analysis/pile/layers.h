@@ -39,7 +39,7 @@ struct Layers {
 /// along its surface into stretches of one cell, so that the coarsening from crest to toe does not count as
 /// layering. In each stretch a dump's rock is halved by the plane along the slope that has half of its mass
 /// on either side; a grain across it counts in both halves with its parts, so one block as thick as the layer
-/// is no grading. The slope is that of the pile's profile (slope_angle()), the bench's where the profile is
+/// is no grading. The slope is that of the pile's profile (slope_line()), the bench's where the profile is
 /// too short. A dump covers a stretch when it has at least `fewest_grains` centres there; thickness and
 /// halves are of these, mass and chi of all its rock. `original`: every grain as dumped; `porosity` of the
 /// pile, for example Inside::mean_porosity.

@@ -48,8 +48,8 @@ std::optional<PassingCurve> mixed_reference(const NamedGrains& dumped, const Nam
 
 // Along whose normal a slope is seen, degrees.
 double facing(const std::vector<Grain>& pile, double crest_height) {
-  const auto angle = slope_angle(slope_profile(pile), crest_height);
-  return angle && *angle > 0 && *angle < 90 ? *angle : kUsualSlope;
+  const auto line = slope_line(slope_profile(pile, crest_height), crest_height);
+  return line && line->angle > 0 ? line->angle : kUsualSlope;
 }
 
 /// Preferred numbers R10 (ISO 3) from just below the smallest to just above the largest diameter; 1 m is

@@ -59,7 +59,7 @@ int slice_of(const Grain& grain, double crest_height, int n, double border_shift
 
 /// Cuts the slope into `n` slices by height (n and crest_height above 0), each with what is seen of its
 /// grains where that is measured. Grains above the crest are in none. Seen along the normal of the fitted
-/// profile (slope_angle()), or of a slope of 37 degrees where that is too short to tell or does not fall
+/// profile (slope_line()), or of a slope of 37 degrees where that is too short to tell or does not fall
 /// towards +x.
 std::vector<NamedGrains> slices_of(const std::vector<Grain>& pile, double crest_height, int n,
                                    const Measurement& measured);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -46,14 +47,34 @@ SurfaceHeight::SurfaceHeight(const std::vector<Grain>& pile, double y_low, doubl
   }
 }
 
+// Indices of the columns there, the last excluded; some may lie beyond the rock.
+std::pair<long, long> SurfaceHeight::columns(double x_low, double x_high) const {
+  return {std::lround(std::ceil((x_low - x0_) / pitch_x_ - 0.5)),
+          std::lround(std::ceil((x_high - x0_) / pitch_x_ - 0.5))};
+}
+
 double SurfaceHeight::share_above(double x_low, double x_high, double height) const {
-  const long from = std::lround(std::ceil((x_low - x0_) / pitch_x_ - 0.5));
-  const long to = std::lround(std::ceil((x_high - x0_) / pitch_x_ - 0.5));
+  const auto [from, to] = columns(x_low, x_high);
   if (to <= from) return 0;
   long above = 0;
   for (long i = std::max(0L, from); i < std::min(to, columns_); ++i)
     for (long j = 0; j < rows_; ++j) above += heights_[static_cast<std::size_t>(i * rows_ + j)] >= height;
   return static_cast<double>(above) / static_cast<double>((to - from) * rows_);
+}
+
+std::optional<double> SurfaceHeight::reached_by(double x_low, double x_high, double share) const {
+  const auto [from, to] = columns(x_low, x_high);
+  std::vector<double> heights;
+  for (long i = std::max(0L, from); i < std::min(to, columns_); ++i)
+    for (long j = 0; j < rows_; ++j)
+      if (const double z = heights_[static_cast<std::size_t>(i * rows_ + j)];
+          z > std::numeric_limits<double>::lowest())
+        heights.push_back(z);
+  const auto needed = std::lround(std::ceil(share * static_cast<double>((to - from) * rows_)));
+  if (needed < 1 || static_cast<long>(heights.size()) < needed) return std::nullopt;
+  const auto at = heights.begin() + needed - 1;
+  std::nth_element(heights.begin(), at, heights.end(), std::greater<>());
+  return *at;
 }
 
 }  // namespace scree

@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 
+#include "analysis/pile/slope_profile.h"
 #include "analysis/report/pictures.h"
 #include "analysis/report/report_text.h"
 #include "analysis/results/summary.h"
@@ -236,17 +237,12 @@ Picture profile_chart(const RunResult& result, const SceneFacts& scene, const st
     if (seed.slope_angle) angles.push_back(*seed.slope_angle);
     if (seed.profile.empty()) continue;
     blocks += fmt::format("$s{} << END\n", i);
-    double high = 0;
-    for (const auto& point : seed.profile) high = std::max(high, point[1]);
+    if (const auto line = slope_line(seed.profile, result.bench_height)) x += line->x, z += line->z, ++count;
     for (const auto& point : seed.profile) {
       blocks += fmt::format("{:.5g} {:.5g}\n", point[0], point[1]);
       left = std::fmin(left, point[0]);
       right = std::fmax(right, point[0]);
       top = std::max(top, point[1]);
-      if (point[1] < 0.25 * high || point[1] > 0.75 * high) continue;
-      x += point[0];
-      z += point[1];
-      ++count;
     }
     blocks += "END\n";
     plots += fmt::format("{}$s{} using 1:2 with lines lw 1.2 lc rgb '#0072b2' {}", plots.empty() ? "" : ", ",
