@@ -114,6 +114,9 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
   r.largest_overlap_ratio = outcome.statistics.largest_overlap_ratio;
   r.lost_particles = outcome.statistics.lost_particles;
   r.lost_mass = outcome.statistics.lost_mass;
+  if (std::holds_alternative<EndDump>(scenario.experiment) ||
+      std::holds_alternative<BucketDump>(scenario.experiment))
+    r.carried_back = outcome.carried_back;
   if (outcome.energy) r.energy = energy_terms(*outcome.energy);
   r.failures = watch_failures(outcome);
   r.squeezed_into_walls = outcome.statistics.squeezed_into_walls;
@@ -186,13 +189,14 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
 
   for (std::string& note : comparison_notes(result.comparison)) result.notes.push_back(std::move(note));
 
-  double overlap = 0, lost = 0, mass = 0, left_out = 0;
+  double overlap = 0, lost = 0, mass = 0, left_out = 0, carried = 0;
   std::int64_t squeezed = 0, crowded = 0;
   std::int64_t lost_count = 0;
   for (const SeedResult& s : result.seeds) {
     for (const std::string& failure : s.failures)
       result.failures.push_back(fmt::format("seed {}: {}", s.seed, failure));
     overlap = std::max(overlap, s.largest_overlap_ratio);
+    carried += s.carried_back.value_or(0);
     lost += s.lost_mass, lost_count += s.lost_particles, mass += s.mass;
     squeezed += s.squeezed_into_walls, crowded += s.crowded_contacts;
     if (!s.sections.empty()) left_out += s.sections.front().mass_outside;
@@ -224,6 +228,11 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
     result.notes.push_back(
         fmt::format("{} spheres ({:.2f} t, {:.2f} % of the mass) left the model and are not in the pile",
                     lost_count, lost / 1000, 100 * lost / mass));
+  if (carried > 0)
+    result.notes.push_back(
+        fmt::format("{:.1f} t ({:.1f} % of the mass) stayed in the bed or bucket and left with it; they are "
+                    "not in the pile, but in the rock as dumped that it is compared with",
+                    carried / 1000 / static_cast<double>(result.seeds.size()), 100 * carried / mass));
   if (squeezed > 0)
     result.notes.push_back(
         fmt::format("{} times a sphere was found more than half inside a wall (squeezed through it, or a "

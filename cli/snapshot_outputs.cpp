@@ -16,10 +16,6 @@ namespace {
 constexpr double kOtherRock = 4;    // times the D50 of the scenario: other rock, or other units
 constexpr double kMuchAbove = 0.2;  // of the mass above the crest: the pile and the bench do not fit
 
-// Of the run, the scenario or its grading, not of the pile.
-constexpr std::array kOfTheRun{
-    "particles", "simulated_seconds",  "largest_overlap_ratio", "lost_mass_t", "at_rest", "sections",
-    "dumps",     "share_above_1m_orig"};
 constexpr std::array kOfDumps{"layer_coarsening_down", "layer_variance_between", "layer_variance_by_chance",
                               "point1_toe_width_m"};
 
@@ -87,7 +83,8 @@ Outputs outputs_of_snapshot(const Scenario& scenario, SnapshotRead read, std::ve
   const SeedResult seed = analyse(scenario, 0, std::move(outcome), std::nullopt);
   note_misfit(scenario, seed, notes);
   Outputs outputs = outputs_of(seed);
-  for (const char* name : kOfTheRun) outputs.erase(name);
+  std::erase_if(outputs, [](const auto& output) { return is_of_the_run(output.first); });
+  outputs.erase("carried_back_t");  // it is not in the pile
   if (!read.has_dumps)
     for (const char* name : kOfDumps) outputs.erase(name);
   if (outputs.empty()) throw std::invalid_argument("nothing of the pile can be read: is it this experiment?");

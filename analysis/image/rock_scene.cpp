@@ -25,7 +25,7 @@ std::vector<double> diameters_for(const Grading& grading, const SceneSettings& s
   double mass = wanted * grading.diameter(0.5) * settings.density / 1.5;
   std::vector<double> diameters;
   for (int k = 0; k < 4; ++k) {
-    diameters = generate_diameters(grading, mass, settings.density, settings.seed, 1);
+    diameters = generate_diameters(grading, mass, {settings.density}, settings.seed, 1);
     const double area = area_of(diameters);
     if (std::abs(area - wanted) < 0.02 * wanted) break;
     mass *= wanted / area;

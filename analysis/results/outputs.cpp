@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <regex>
@@ -16,9 +17,12 @@ namespace {
 
 constexpr const char* kCells[] = {"top", "middle", "bottom"};
 
-std::vector<std::string> plain_names(const std::string& experiment) {
-  std::vector<std::string> names{"particles", "simulated_seconds", "largest_overlap_ratio", "lost_mass_t",
+constexpr std::array kOfEveryRun{"particles", "simulated_seconds", "largest_overlap_ratio", "lost_mass_t",
                                  "at_rest"};
+constexpr std::array kOfEveryDump{"sections", "dumps", "share_above_1m_orig"};
+
+std::vector<std::string> plain_names(const std::string& experiment) {
+  std::vector<std::string> names(kOfEveryRun.begin(), kOfEveryRun.end());
   const auto add = [&](std::initializer_list<const char*> more) {
     names.insert(names.begin(), more.begin(), more.end());
   };
@@ -29,8 +33,11 @@ std::vector<std::string> plain_names(const std::string& experiment) {
          "spread_95"});
   else if (experiment == "drop_test")
     add({"rebound_height_m"});
-  else
-    add({"slope_angle_deg", "chi_zero_x_over_l", "share_above_1m_orig", "sections", "dumps"});
+  else {
+    names.insert(names.end(), kOfEveryDump.begin(), kOfEveryDump.end());
+    add({"slope_angle_deg", "chi_zero_x_over_l"});
+  }
+  if (experiment == "end_dump" || experiment == "bucket_dump") add({"carried_back_t"});
   if (experiment == "end_dump" || experiment == "push_dump")
     add({"point1_toe_width_m", "inside_porosity", "inside_mean_abs_chi", "inside_ksat_contrast",
          "layer_coarsening_down", "layer_variance_between", "layer_variance_by_chance", "largest_at_toe",
@@ -136,6 +143,7 @@ Outputs outputs_of(const SeedResult& seed) {
     }
     add("spread_95", seed.heap->spread_95);
   }
+  if (seed.carried_back) add("carried_back_t", *seed.carried_back / 1000);
   if (seed.slope_angle) add("slope_angle_deg", *seed.slope_angle);
   if (seed.rebound_height) add("rebound_height_m", *seed.rebound_height);
   if (seed.sections.empty()) return outputs;
@@ -226,6 +234,13 @@ bool finished_pile_instead(const PileValue& value, const Outputs& outputs) {
   if (value.dumps == 0 || dumps == 0 || value.dumps == dumps) return false;
   const auto name = output_name_for(value, outputs);
   return name && !name->ends_with(fmt::format("_dump{}", value.dumps));
+}
+
+bool is_of_the_run(const std::string& output) {
+  const auto in = [&](const auto& names) {
+    return std::find(names.begin(), names.end(), output) != names.end();
+  };
+  return in(kOfEveryRun) || in(kOfEveryDump);
 }
 
 std::string why_not_given(const OutputScope& scope, const std::string& output) {

@@ -25,8 +25,14 @@ namespace scree {
 /// inside_... and layer_... are of a section through the first dump point: the rock within 4 m of it on
 /// either side (half a truck bed or blade), in cells of a tenth of the bench's height. flow_depth_m is that
 /// of a band of 2 m on either side of the same point (FlowSettings::half_width).
+/// carried_back_t, of trucks and buckets, is rock that stayed in them (they can be weighed).
 Outputs outputs_of(const SeedResult& seed);
 std::vector<Outputs> outputs_of(const std::vector<SeedResult>& seeds);
+
+/// An output says something of the run, its scenario or its grading that cannot be measured on a pile:
+/// particles, simulated_seconds, largest_overlap_ratio, lost_mass_t, at_rest, sections, dumps,
+/// share_above_1m_orig.
+bool is_of_the_run(const std::string& output);
 
 /// A number of a pile under the names of printed values.
 struct PileValue {

@@ -31,6 +31,7 @@ struct SeedResult {
   double largest_overlap_ratio = 0;             ///< overlap over the smaller radius
   std::int64_t lost_particles = 0;
   double lost_mass = 0;                  ///< kg
+  std::optional<double> carried_back;    ///< kg, that stayed in bed or bucket and left with it
   std::int64_t squeezed_into_walls = 0;  ///< mesh contacts that began inside a closed mesh
   std::int64_t crowded_contacts = 0;     ///< mesh contacts left out because a sphere had too many
   std::optional<EnergyTerms> energy;     ///< none with engine impulse

@@ -111,6 +111,7 @@ Json seed_facts(const SeedResult& seed) {
           {"largest_overlap_ratio", number(seed.largest_overlap_ratio)},
           {"lost_particles", seed.lost_particles},
           {"lost_mass_t", number(seed.lost_mass / 1000)},
+          {"carried_back_t", seed.carried_back ? number(*seed.carried_back / 1000) : Json()},
           {"at_rest", seed.at_rest},
           {"interrupted", seed.interrupted}};
 }

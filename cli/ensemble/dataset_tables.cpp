@@ -9,6 +9,7 @@
 #include <map>
 
 #include "analysis/results/output_units.h"
+#include "analysis/results/outputs.h"
 #include "cli/ensemble/output_scope.h"
 #include "sim/material/input_text.h"
 #include "sim/scene/scenario_values.h"
@@ -78,6 +79,9 @@ class ObservableTable {
     const std::string experiment = text("experiment"), output = text("observable");
     if (experiment.empty()) table_.fail("experiment is empty");
     if (output.empty()) table_.fail("observable is empty");
+    if (is_of_the_run(output))
+      table_.fail(
+          fmt::format("observable: {} says something of a run, and is not measured on a pile", output));
     const auto& all = dataset_.experiments;
     const auto of = std::find_if(all.begin(), all.end(), [&](const auto& e) { return e.name == experiment; });
     if (of == all.end()) {

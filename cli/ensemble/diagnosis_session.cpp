@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "analysis/diagnose/words.h"
+#include "analysis/results/outputs.h"
 #include "cli/ensemble/design.h"
 #include "cli/ensemble/run_request.h"
 #include "cli/ensemble/tried_models.h"
@@ -371,9 +372,7 @@ std::vector<NextMeasurement> DiagnosisSession::tell_apart(const DiagnosisOutcome
     for (const WholeRun& each : everything_[e])
       for (const auto& [name, value] : each.outputs) names.insert(name);
     for (const std::string& name : names) {
-      if (measured.contains(name) || name == "particles" || name == "at_rest" || name == "sections" ||
-          name == "dumps")
-        continue;
+      if (measured.contains(name) || is_of_the_run(name)) continue;
       std::vector<DesignRun> runs;
       for (const WholeRun& each : everything_[e])
         if (const auto found = each.outputs.find(name);

@@ -7,7 +7,10 @@ Effect density_by_size() {
       .name = "density_by_size",
       .title = "density that changes with size",
       .doc = "Ore minerals and pores break away: coarse and fine rock differ in density.",
-      .equation = "Density of a grain is times (d / D50)^exponent.",
+      .equation =
+          "Density of a grain is times (d / D50)^exponent. Payload and grading, both by mass, stay what they "
+          "are: "
+          "there are fewer of the denser sizes.",
       .source =
           "Small in the rock of the thesis (Qiu, Polytechnique Montreal, tables A.1 and A.2): specific "
           "gravity 2.732 of oven-dry rock of 5 to 50 mm (ASTM C127, pores counted), 2.756 below 5 mm (ASTM "

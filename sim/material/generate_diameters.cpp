@@ -3,7 +3,7 @@
 // With m the mass drawn so far, the next sphere stands for the next stretch [m, m + v(d)] of the curve's
 // mass, v(d) being its own. Its diameter is the curve's at a random place u in that stretch:
 //
-//     d = D(1 - (m + u v(d)) / M),   v(d) = density pi d^3 / 6,   u uniform in [0, 1)
+//     d = D(1 - (m + u v(d)) / M),   v(d) = density(d) pi d^3 / 6,   u uniform in [0, 1)
 //
 // which has one solution, as the left side rises with d and the right side falls; in a gap of the curve,
 // where it may lie, an end of the gap is taken: the coarse one while half a sphere of it is left above the
@@ -32,24 +32,34 @@ constexpr double mass_bound = 0.0049;     // share; the promise is 0.5 %
 constexpr int most_draws = 200;
 constexpr double most_spheres = 2e7;
 
+/// Mass of a sphere over that of one of 1 m: d^power.
+class SphereShape {
+ public:
+  explicit SphereShape(const RockDensity& density) : power_(3 + density.exponent) {}
+  double operator()(double d) const { return power_ == 3 ? d * d * d : std::pow(d, power_); }
+  double power() const { return power_; }
+
+ private:
+  double power_;
+};
+
 /// The curve read from coarse to fine; diameters fall slowly, so that the segment is at hand.
 class CoarseToFine {
  public:
-  explicit CoarseToFine(const Grading& grading)
-      : points_(grading.points()), segment_(grading.points().size() - 1) {}
+  CoarseToFine(const Grading& grading, const SphereShape& shape)
+      : points_(grading.points()), shape_(shape), segment_(grading.points().size() - 1) {}
 
-  /// Root d of d = D(1 - (mass_share + scale d^3)), scale below `sphere`: sphere d^3 is the share of the mass
-  /// that a sphere has.
+  /// Root d of d = D(1 - (mass_share + scale shape(d))), scale below `sphere`: sphere shape(d) is the share
+  /// of the mass that a sphere has.
   double solve(double mass_share, double scale, double sphere) {
-    const auto rest = [&](double d) { return 1 - mass_share - scale * d * d * d; };
+    const auto rest = [&](double d) { return 1 - mass_share - scale * shape_(d); };
     while (segment_ + 1 < points_.size() && rest(points_[segment_].diameter) > points_[segment_].passing)
       ++segment_;
     while (segment_ > 1 && rest(points_[segment_ - 1].diameter) < points_[segment_ - 1].passing) --segment_;
     const auto &a = points_[segment_ - 1], &b = points_[segment_];
     // A gap is crossed where less than half a sphere of its coarse end is left above it, whatever u.
     const auto is_left = [&](const Grading::Point& coarse) {
-      return 1 - coarse.passing - mass_share >=
-             0.5 * sphere * coarse.diameter * coarse.diameter * coarse.diameter;
+      return 1 - coarse.passing - mass_share >= 0.5 * sphere * shape_(coarse.diameter);
     };
     if (segment_ > 1 && a.passing == points_[segment_ - 2].passing && !is_left(a))
       return points_[segment_ - 2].diameter;
@@ -64,7 +74,7 @@ class CoarseToFine {
       const double d = a.diameter * std::exp(t);
       const double f = a.passing + slope * t - rest(d);
       (f > 0 ? high : low) = t;
-      double next = t - f / (slope + 3 * scale * d * d * d);
+      double next = t - f / (slope + shape_.power() * scale * shape_(d));
       if (!(next > low && next < high)) next = 0.5 * (low + high);
       if (std::abs(next - t) < 1e-13) break;
       t = next;
@@ -74,19 +84,21 @@ class CoarseToFine {
 
  private:
   const std::vector<Grading::Point>& points_;
+  SphereShape shape_;
   std::size_t segment_;
 };
 
-std::vector<double> draw(const Grading& grading, double mass, double sphere_factor, Random& random) {
-  CoarseToFine curve(grading);
-  const double finest = sphere_factor * std::pow(grading.min_diameter(), 3);
+std::vector<double> draw(const Grading& grading, double mass, double sphere_factor, const SphereShape& shape,
+                         Random& random) {
+  CoarseToFine curve(grading, shape);
+  const double finest = sphere_factor * shape(grading.min_diameter());
   std::vector<double> diameters;
   double drawn = 0;
   // A last sphere that would leave more mass over than without it is not drawn.
   while (drawn + 0.5 * finest < mass) {
     const double d = curve.solve(drawn / mass, random.uniform() * sphere_factor / mass, sphere_factor / mass);
     diameters.push_back(d);
-    drawn += sphere_factor * d * d * d;
+    drawn += sphere_factor * shape(d);
   }
   return diameters;
 }
@@ -94,7 +106,7 @@ std::vector<double> draw(const Grading& grading, double mass, double sphere_fact
 /// Largest of the passing errors at the grading's points and the mass error, each over its bound; 1 or less:
 /// both are kept.
 double worst_error(const std::vector<double>& diameters, const Grading& grading, double mass,
-                   double sphere_factor) {
+                   double sphere_factor, const SphereShape& shape) {
   const auto& points = grading.points();
   std::vector<double> between(points.size(), 0.0);  // mass finer than point i, not finer than point i - 1
   double total = 0;
@@ -102,7 +114,7 @@ double worst_error(const std::vector<double>& diameters, const Grading& grading,
     const auto above =
         std::lower_bound(points.begin(), points.end(), d,
                          [](const Grading::Point& point, double x) { return point.diameter < x; });
-    const double sphere = sphere_factor * d * d * d;
+    const double sphere = sphere_factor * shape(d);
     between[std::min<std::size_t>(above - points.begin(), points.size() - 1)] += sphere;
     total += sphere;
   }
@@ -115,30 +127,32 @@ double worst_error(const std::vector<double>& diameters, const Grading& grading,
 }
 
 /// Expected number of spheres: the integral of dP M / v(d), exact for a curve linear in log d.
-double expected_count(const Grading& grading, double mass, double sphere_factor) {
+double expected_count(const Grading& grading, double mass, double sphere_factor, const SphereShape& shape) {
   double sum = 0;
   const auto& points = grading.points();
   for (std::size_t i = 1; i < points.size(); ++i) {
     const double a = points[i - 1].diameter, b = points[i].diameter;
     sum += (points[i].passing - points[i - 1].passing) / std::log(b / a) *
-           (std::pow(a, -3) - std::pow(b, -3)) / 3;
+           (std::pow(a, -shape.power()) - std::pow(b, -shape.power())) / shape.power();
   }
   return sum * mass / sphere_factor;
 }
 
 }  // namespace
 
-std::vector<double> generate_diameters(const Grading& grading, double mass, double density,
+std::vector<double> generate_diameters(const Grading& grading, double mass, const RockDensity& density,
                                        std::uint64_t seed, std::uint64_t dump) {
   if (!(std::isfinite(mass) && mass > 0))
     throw std::invalid_argument(fmt::format("mass {} kg must be above 0", mass));
-  if (!(std::isfinite(density) && density > 0))
-    throw std::invalid_argument(fmt::format("density {} kg/m3 must be above 0", density));
-  const double sphere_factor = density * std::numbers::pi / 6;
-  if (mass < sphere_factor * std::pow(grading.min_diameter(), 3))
+  if (!(std::isfinite(density.value) && density.value > 0))
+    throw std::invalid_argument(fmt::format("density {} kg/m3 must be above 0", density.value));
+  const SphereShape shape(density);
+  const double sphere_factor =
+      density.value * std::numbers::pi / 6 * std::pow(density.diameter, -density.exponent);
+  if (mass < sphere_factor * shape(grading.min_diameter()))
     throw std::invalid_argument(
         fmt::format("mass {} kg is less than the smallest sphere of grading {}", mass, grading.name()));
-  if (const double count = expected_count(grading, mass, sphere_factor); count > most_spheres)
+  if (const double count = expected_count(grading, mass, sphere_factor, shape); count > most_spheres)
     throw std::invalid_argument(fmt::format("{} kg of grading {} are {:.2g} spheres; scalp its fine end",
                                             mass, grading.name(), count));
 
@@ -146,8 +160,8 @@ std::vector<double> generate_diameters(const Grading& grading, double mass, doub
   std::vector<double> best;
   double best_error = 0;
   for (int i = 0; i < most_draws; ++i) {
-    std::vector<double> diameters = draw(grading, mass, sphere_factor, random);
-    const double error = worst_error(diameters, grading, mass, sphere_factor);
+    std::vector<double> diameters = draw(grading, mass, sphere_factor, shape, random);
+    const double error = worst_error(diameters, grading, mass, sphere_factor, shape);
     if (best.empty() || error < best_error) {
       best = std::move(diameters);
       best_error = error;

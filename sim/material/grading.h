@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/material/material.h"
+
 namespace scree {
 
 /// A passing curve: share of the mass finer than a diameter, linear in log10(diameter) between points.
@@ -57,7 +59,7 @@ Grading read_grading(const std::filesystem::path& file);
 /// nearest of 200 draws is taken. `seed` and `dump` name the random stream. Throws std::invalid_argument when
 /// mass or density is not positive, the mass is less than the smallest sphere, or more than 20 million
 /// spheres would be needed.
-std::vector<double> generate_diameters(const Grading& grading, double mass, double density,
+std::vector<double> generate_diameters(const Grading& grading, double mass, const RockDensity& density,
                                        std::uint64_t seed, std::uint64_t dump);
 
 }  // namespace scree

@@ -24,6 +24,15 @@ struct Material {
   double shear_damping_ratio = 0.0;   ///< beta_s, the same of the shear dashpot, -.
 };
 
+/// Density of rock: `value` (kg/m3) times (d / diameter)^exponent.
+struct RockDensity {
+  double value, exponent = 0, diameter = 1;
+};
+
+inline RockDensity density_of(const Material& rock) {
+  return {rock.density, rock.density_exponent, rock.density_diameter};
+}
+
 /// Mass of a sphere of rock (kg) of this diameter (m).
 inline double sphere_mass(const Material& rock, double diameter) {
   const double mass = rock.density * std::numbers::pi / 6.0 * std::pow(diameter, 3);

@@ -63,6 +63,10 @@ RunOutcome run_bucket_dump(const Scenario& scenario, const BucketDump& e, std::u
     if (!stage.advance(kSettle, "settling", share, share + 0.1 * part)) return stage.finish();
     world.remove_mesh(lid);
     if (!stage.advance_to_rest("emptying", share + 0.1 * part, share + part)) return stage.finish();
+    stage.carry_back([&](const Vec3& place) {
+      const Vec3 here = pose.to_local(place);
+      return here.z() >= 0 && here.z() <= e.height && std::hypot(here.x(), here.y()) <= 0.5 * e.diameter;
+    });
     world.remove_mesh(bucket);
     if (!stage.advance_to_rest("bucket leaves", share + part, share + part)) return stage.finish();
     stage.dump_done(dump, e.buckets);

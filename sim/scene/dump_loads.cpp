@@ -13,7 +13,7 @@ DumpLoads make_dump_loads(const Scenario& scenario, double payload, const std::v
     ++dump;
     const auto stream = static_cast<std::uint64_t>(dump);
     const std::vector<double> diameters =
-        generate_diameters(model.grading, payload, scenario.material.density, seed, stream);
+        generate_diameters(model.grading, payload, density_of(model.material), seed, stream);
     const Load load = fill_region(region, diameters, seed, stream, model.changes.clumps);
     loads.heights.push_back(load.height);
     std::vector<NewSphere> spheres;

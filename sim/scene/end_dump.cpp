@@ -10,7 +10,7 @@ namespace scree {
 namespace {
 
 constexpr double kGuardWall = 0.3;   // thickness of the guard that holds a heaped load while it settles, m
-constexpr double kBedLeaves = 0.5;   // s given to rock that still lies in the bed when the truck drives off
+constexpr double kBedLeaves = 0.5;   // s given to rock that leans on the truck when it drives off
 constexpr double kHoistPause = 2.0;  // s that the bed stays up after hoisting
 
 Quaternion tilt(double degrees) {
@@ -35,6 +35,15 @@ Motion swinging_gate(const EndDump& e, double y, double start, double seconds) {
     keys.push_back({start + seconds * k / kSteps, gate});
   }
   return Motion(std::move(keys));
+}
+
+// What lies in the bed, up to `height` (m) over its floor.
+auto in_bed(const Pose& bed, const Vec3& box, double height) {
+  return [=](const Vec3& place) {
+    const Vec3 here = bed.to_local(place);
+    return here.x() >= -box.x() && here.x() <= 0 && std::abs(here.y()) <= 0.5 * box.y() && here.z() >= 0 &&
+           here.z() <= height;
+  };
 }
 
 // Walls above the sides of the bed, in the bed's frame, for a load that is heaped.
@@ -98,6 +107,8 @@ RunOutcome run_end_dump(const Scenario& scenario, const EndDump& e, std::uint64_
         return stage.finish();
     }
     if (!stage.advance_to_rest("dumping", emptied, share + 0.95 * part)) return stage.finish();
+    stage.carry_back(
+        in_bed(truck_pose(e, y, e.truck.tilt_deg), e.truck.load_box, std::max(height, e.truck.load_box.z())));
     world.remove_mesh(bed);
     if (e.truck.release == Release::hoist) world.remove_mesh(gate);
     if (!stage.advance(kBedLeaves, "truck leaves", share + 0.95 * part, share + part)) return stage.finish();

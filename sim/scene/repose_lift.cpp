@@ -13,7 +13,7 @@ RunOutcome run_repose_lift(const Scenario& scenario, const ReposeLift& e, std::u
   const double r = e.floor_radius;
   const EffectiveModel model = effective_model(scenario);
   const std::vector<double> diameters =
-      generate_diameters(model.grading, e.mass, scenario.material.density, seed, 1);
+      generate_diameters(model.grading, e.mass, density_of(model.material), seed, 1);
   const double floor = ball_radius(e.base_layer);  // the container stands on the balls
   const Load load = fill_region({{e.diameter, 0, e.height}}, diameters, seed, 1, model.changes.clumps);
   const double lift = e.height + 2.0 * diameters.front();

@@ -63,6 +63,7 @@ struct RunOutcome {
   std::vector<Grain> original;           ///< every grain as generated
   std::vector<Grain> fixed;              ///< balls of the base layer
   std::optional<double> rebound_height;  ///< drop test: highest rise of its lowest point after the fall, m
+  double carried_back = 0;  ///< kg, that stayed in the bed or bucket and left with it; not in the pile
   WorldStatistics statistics;
   std::optional<EnergyBalance> energy;  ///< closed at the end; none with engine impulse
   double simulated_seconds = 0, wall_seconds = 0;
@@ -73,8 +74,8 @@ struct RunOutcome {
   /// Every member, to keep a seed that has come to its end.
   template <class Stream>
   void state(Stream& stream) {
-    stream(final_state, after_dumps, original, fixed, rebound_height, statistics, energy, simulated_seconds,
-           wall_seconds, at_rest, interrupted, notes);
+    stream(final_state, after_dumps, original, fixed, rebound_height, carried_back, statistics, energy,
+           simulated_seconds, wall_seconds, at_rest, interrupted, notes);
   }
 };
 

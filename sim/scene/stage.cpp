@@ -91,6 +91,7 @@ void Stage::add_tools() {
                       Eigen::AngleAxisd(r.x(), Vec3::UnitX());
       keys.push_back({k.time, pose});
     }
+    if (keys.size() > 1) tools_end_ = std::max(tools_end_, keys.back().time);
     world_->add_mesh(read(tool.mesh, tool.scale), tool_surface(tool.mu, tool.mu_r), Motion(std::move(keys)));
   }
 }
@@ -125,6 +126,10 @@ void Stage::push_load(const Vec3& velocity) {
     world_->set_velocity(static_cast<std::int64_t>(first + k), velocity, Vec3::Zero());
 }
 
+void Stage::carry_back(const std::function<bool(const Vec3& place)>& inside) {
+  if (!replaying()) outcome_.carried_back += world_->take_out(inside);  // else it comes with the saved state
+}
+
 double Stage::recall() {
   if (recalled_ == observed_.size()) throw StateError("saved state: it is of another run");
   return observed_[recalled_++];
@@ -136,10 +141,10 @@ void Stage::state(Stream& stream) {
     world_->load_state(stream);
   else
     world_->save_state(stream);
-  stream.section("outcome", 1);
+  stream.section("outcome", 2);
   double wall =
       wall_before_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  stream(outcome_.after_dumps, wall);
+  stream(outcome_.after_dumps, outcome_.carried_back, wall);
   if (Stream::kReads) wall_before_ = wall;
 }
 
@@ -226,6 +231,8 @@ void Stage::dump_done(int dump, int dumps) {
 }
 
 RunOutcome Stage::finish() {
+  if (const double left = tools_end_ - world_->time(); !outcome_.interrupted && left > 1e-9)
+    if (advance(left, "tools", 1, 1)) advance_to_rest("tools", 1, 1);
   if (replaying()) throw StateError("saved state: it is of another run");
   outcome_.final_state = world_->snapshot();
   if (hooks_.frame) hooks_.frame(outcome_.final_state, world_->statistics().steps);

@@ -37,6 +37,9 @@ class Stage {
   /// Something a reader of the result should know.
   void note(std::string text) { outcome_.notes.push_back(std::move(text)); }
 
+  /// Takes the rock along that lies in a tool which leaves: its middle is `inside`. It is noted at the end.
+  void carry_back(const std::function<bool(const Vec3& place)>& inside);
+
   /// Something that the experiment learns from the world and acts on: look(), a number. When a run is taken
   /// up again it is what was learnt then; nothing else may be read of the world but its time.
   template <class Look>
@@ -55,6 +58,8 @@ class Stage {
   void set_dump(int dump, int dumps) { progress_.dump = dump, progress_.dumps = dumps; }
   /// The load of this number is at rest and its truck gone: keeps the pile if it was asked for.
   void dump_done(int dump, int dumps);
+  /// The outcome. Unless the user ended the run, the user's own tools go to the end of their way before, and
+  /// what they moved comes to rest.
   RunOutcome finish();
 
  private:
@@ -81,6 +86,7 @@ class Stage {
   std::vector<std::vector<NewSphere>> loads_;
   std::size_t next_load_ = 0;
   double load_mass_ = 0;
+  double tools_end_ = 0;  // s, when the last of the user's own tools stands still
   double next_frame_ = 0;
   std::int64_t ticks_ = 0, saved_ticks_ = 0;
   std::vector<double> observed_;  // everything that was, in order

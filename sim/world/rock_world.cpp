@@ -307,16 +307,35 @@ void RockWorld::check_spheres(std::span<const int> spheres) {
     lost.erase(std::unique(lost.begin(), lost.end()), lost.end());
   }
   for (const int i : lost) {
-    spheres_.lost[i] = 1;
     if (spheres_.leads(i)) ++statistics_.lost_particles;
     statistics_.lost_mass += spheres_.velocity[i].w;
-    drop_body(spheres_.id[i]);
-    account_.lost_potential += gravity_energy(i);
-    account_.lost_other += kinetic_energy(i);
-    spheres_.velocity[i].set(Vec3::Zero());
-    spheres_.spin[i].set(Vec3::Zero());
-    sphere_lost(i);
+    leave(i);
   }
+}
+
+// Takes no part any more.
+void RockWorld::leave(int index) {
+  spheres_.lost[index] = 1;
+  drop_body(spheres_.id[index]);
+  account_.lost_potential += gravity_energy(index);
+  account_.lost_other += kinetic_energy(index);
+  spheres_.velocity[index].set(Vec3::Zero());
+  spheres_.spin[index].set(Vec3::Zero());
+  sphere_lost(index);
+}
+
+double RockWorld::take_out(const std::function<bool(const Vec3& place)>& inside) {
+  double mass = 0;
+  for (int i = 0; i < spheres_.movable; ++i) {
+    if (fixed_[i] || spheres_.lost[i] || !spheres_.leads(i)) continue;
+    const int other = spheres_.partner.empty() ? -1 : spheres_.partner[i];
+    const Vec3 place = spheres_.place[i].vec();
+    if (!inside(other < 0 ? place : Vec3(0.5 * (place + spheres_.place[other].vec())))) continue;
+    mass += spheres_.grain_mass(i);
+    leave(i);
+    if (other >= 0) leave(other);
+  }
+  return mass;
 }
 
 }  // namespace scree

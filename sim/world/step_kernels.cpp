@@ -182,11 +182,9 @@ SCREE_INLINE void compute(const StepView& view, BlockWork& work, const FourConta
                                                                  twin(rim.z_, nothing)};
   motion.twist = (m.spin1 + m.spin2).dot(n) * 0.5f;
   motion.dt = view.last_dt;
-  if (view.law.has_dashpots()) {
+  motion.reduced_mass = zero;
+  if (view.law.has_dashpots())
     for (int k = 0; k < kLanes; ++k) motion.reduced_mass[k] = s.reduced_mass(four.first[k], four.second[k]);
-  } else {
-    motion.reduced_mass = zero;
-  }
 
   ContactMemory* const memories = view.pairs.memories();
   ContactMemory* memory[kLanes];

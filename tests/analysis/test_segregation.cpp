@@ -31,7 +31,7 @@ std::vector<Grain> load(double z = 1.0) {
   const Grading grading =
       read_grading(std::filesystem::path(SCREE_SOURCE_DIR) / "assets" / "gradings" / "QB0.csv");
   std::vector<Grain> grains;
-  for (const double d : generate_diameters(grading, 300e3, density, 1, 1))
+  for (const double d : generate_diameters(grading, 300e3, {density}, 1, 1))
     grains.push_back(grain(d, z, density * std::numbers::pi / 6 * d * d * d));
   return grains;
 }

@@ -34,7 +34,7 @@ class GeneratedLoad : public testing::TestWithParam<Load> {};
 TEST_P(GeneratedLoad, KeepsPassingWithin2PointsAndMassWithinHalfAPercent) {
   const Grading grading = from_assets(GetParam().grading);
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-    const auto diameters = generate_diameters(grading, GetParam().mass, density, seed, seed % 4 + 1);
+    const auto diameters = generate_diameters(grading, GetParam().mass, {density}, seed, seed % 4 + 1);
     ASSERT_TRUE(std::is_sorted(diameters.rbegin(), diameters.rend()));
     ASSERT_LE(diameters.front(), grading.max_diameter());
     ASSERT_GE(diameters.back(), grading.min_diameter());
@@ -62,16 +62,17 @@ TEST(GenerateDiameters, Qb0DumpHasThePrintedNumberOfSpheres) {
   // Printed: 9,200 in 4 dumps of 300 t.
   double count = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed)
-    count += static_cast<double>(generate_diameters(from_assets("QB0"), 300e3, density, seed, 1).size()) / 20;
+    count +=
+        static_cast<double>(generate_diameters(from_assets("QB0"), 300e3, {density}, seed, 1).size()) / 20;
   EXPECT_NEAR(count, 2300, 0.02 * 2300);
 }
 
 TEST(GenerateDiameters, IsAFunctionOfSeedAndDump) {
   const Grading qb = from_assets("QB0");
-  const auto first = generate_diameters(qb, 300e3, density, 10001, 1);
-  EXPECT_EQ(first, generate_diameters(qb, 300e3, density, 10001, 1));
-  EXPECT_NE(first, generate_diameters(qb, 300e3, density, 10002, 1));
-  EXPECT_NE(first, generate_diameters(qb, 300e3, density, 10001, 2));
+  const auto first = generate_diameters(qb, 300e3, {density}, 10001, 1);
+  EXPECT_EQ(first, generate_diameters(qb, 300e3, {density}, 10001, 1));
+  EXPECT_NE(first, generate_diameters(qb, 300e3, {density}, 10002, 1));
+  EXPECT_NE(first, generate_diameters(qb, 300e3, {density}, 10001, 2));
 }
 
 TEST(GenerateDiameters, SeedsVaryTheCoarsestSpheres) {
@@ -79,7 +80,7 @@ TEST(GenerateDiameters, SeedsVaryTheCoarsestSpheres) {
   const Grading qb = from_assets("QB0");
   std::vector<double> largest;
   for (std::uint64_t seed = 1; seed <= 50; ++seed)
-    largest.push_back(generate_diameters(qb, 300e3, density, seed, 1).front());
+    largest.push_back(generate_diameters(qb, 300e3, {density}, seed, 1).front());
   const double mean = std::accumulate(largest.begin(), largest.end(), 0.0) / largest.size();
   double variance = 0;
   for (const double d : largest) variance += (d - mean) * (d - mean) / (largest.size() - 1);
@@ -92,7 +93,7 @@ TEST(GenerateDiameters, ManyLoadsTogetherApproachTheCurveBetweenItsPointsToo) {
   const Grading qb = from_assets("QB0");
   std::vector<double> all;
   for (std::uint64_t dump = 1; dump <= 60; ++dump) {
-    const auto load = generate_diameters(qb, 300e3, density, 1, dump);
+    const auto load = generate_diameters(qb, 300e3, {density}, 1, dump);
     all.insert(all.end(), load.begin(), load.end());
   }
   double total = 0;
@@ -109,7 +110,7 @@ TEST(GenerateDiameters, SmallLoadErrsByNoMoreThanOneSphere) {
   // 10 t of QB0: the header promises an error below one sphere's share, here of the largest drawn.
   const Grading qb = from_assets("QB0");
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const auto diameters = generate_diameters(qb, 10e3, density, seed, 1);
+    const auto diameters = generate_diameters(qb, 10e3, {density}, seed, 1);
     double total = 0, finer = 0;
     for (const double d : diameters) total += mass_of(d);
     EXPECT_NEAR(total, 10e3, mass_of(diameters.front()));
@@ -124,11 +125,12 @@ TEST(GenerateDiameters, SmallLoadErrsByNoMoreThanOneSphere) {
 
 TEST(GenerateDiameters, RefusesWhatCannotBeMade) {
   const Grading qb = from_assets("QB0");
-  EXPECT_THROW(generate_diameters(qb, 0, density, 1, 1), std::invalid_argument);
-  EXPECT_THROW(generate_diameters(qb, std::nan(""), density, 1, 1), std::invalid_argument);
-  EXPECT_THROW(generate_diameters(qb, 300e3, -1, 1, 1), std::invalid_argument);
-  EXPECT_THROW(generate_diameters(qb, 1, density, 1, 1), std::invalid_argument);  // a 0.1 m sphere: 1.4 kg
-  EXPECT_THROW(generate_diameters(from_assets("G0"), 1e3, density, 1, 1), std::invalid_argument);  // 0.075 mm
+  EXPECT_THROW(generate_diameters(qb, 0, {density}, 1, 1), std::invalid_argument);
+  EXPECT_THROW(generate_diameters(qb, std::nan(""), {density}, 1, 1), std::invalid_argument);
+  EXPECT_THROW(generate_diameters(qb, 300e3, {-1}, 1, 1), std::invalid_argument);
+  EXPECT_THROW(generate_diameters(qb, 1, {density}, 1, 1), std::invalid_argument);  // a 0.1 m sphere: 1.4 kg
+  EXPECT_THROW(generate_diameters(from_assets("G0"), 1e3, {density}, 1, 1),
+               std::invalid_argument);  // 0.075 mm
 }
 
 }  // namespace

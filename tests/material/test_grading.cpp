@@ -129,7 +129,7 @@ TEST(Grading, AGapHasNoRock) {
   double off = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     double finer = 0, all = 0;
-    for (const double d : generate_diameters(g, 500, 2700, seed, 0)) {
+    for (const double d : generate_diameters(g, 500, {2700}, seed, 0)) {
       EXPECT_TRUE(d <= 0.02 * (1 + 1e-12) || d >= 0.1 * (1 - 1e-12)) << d;
       all += d * d * d;
       if (d < 0.05) finer += d * d * d;

@@ -1,0 +1,70 @@
+// Truck loads: what stays in the bed, and tools that move beside them.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "scree_version.h"
+#include "sim/scene/run.h"
+
+namespace scree {
+namespace {
+
+RunOutcome run(const char* file, const std::vector<std::string>& overrides) {
+  const std::filesystem::path source = SCREE_SOURCE_DIR;
+  const ScenarioResult loaded = load_scenario(source / "scenarios" / file, overrides, source / "assets");
+  for (const ScenarioError& error : loaded.errors) ADD_FAILURE() << error.text();
+  return run_scenario(loaded.scenario, 10001, 1, {});
+}
+
+double mass_of(const std::vector<Grain>& grains) {
+  return std::accumulate(grains.begin(), grains.end(), 0.0,
+                         [](double sum, const Grain& grain) { return sum + grain.mass; });
+}
+
+TEST(EndDump, WhatSticksToTheBedIsCarriedBackAndDoesNotFallThroughIt) {
+  for (const char* release : {"open_gate", "hoist"}) {
+    const std::string how = std::string("experiment.truck.release=") + release;
+    const RunOutcome plain = run("small_dump.yaml", {how}),
+                     sticky = run("small_dump.yaml", {how, "effects.sticky_tools.bond_number=3"});
+    EXPECT_LT(plain.carried_back, 0.05 * mass_of(plain.original)) << release;
+    EXPECT_GT(sticky.carried_back, 0.2 * mass_of(sticky.original)) << release;
+    for (const RunOutcome* each : {&plain, &sticky}) {
+      const double there =
+          mass_of(each->final_state.grains) + each->statistics.lost_mass + each->carried_back;
+      EXPECT_NEAR(there, mass_of(each->original), 1e-9 * there) << release;
+      EXPECT_TRUE(each->energy && std::abs(each->energy->relative_error()) < 0.01) << release;
+    }
+    // 4 m high: what the bed let fall when it was taken away lay on the bench top.
+    double above = 0;
+    for (const Grain& grain : sticky.final_state.grains)
+      if (grain.position.z() > 4) above += grain.mass;
+    EXPECT_LT(above, 0.1 * mass_of(sticky.original)) << release;
+  }
+}
+
+TEST(EndDump, ClumpsAreCarriedBackWhole) {
+  const RunOutcome clumps =
+      run("small_dump.yaml", {"effects.sticky_tools.bond_number=3", "effects.clumps.elongation=0.4"});
+  EXPECT_GT(clumps.carried_back, 0);
+  const double there = mass_of(clumps.final_state.grains) + clumps.statistics.lost_mass + clumps.carried_back;
+  EXPECT_NEAR(there, mass_of(clumps.original), 1e-9 * there);
+}
+
+// A run lasts until its tools stand still, and the blade takes the rock on the bench top over the crest.
+TEST(EndDump, ToolsGoToTheEndOfTheirWay) {
+  const auto on_top = [](const RunOutcome& outcome) {
+    double mass = 0;
+    for (const Grain& grain : outcome.final_state.grains)
+      if (grain.position.x() < 0) mass += grain.mass;
+    return mass;
+  };
+  const RunOutcome without = run("quick_dump.yaml", {}), with = run("user_mesh_tool.yaml", {});
+  EXPECT_GT(with.simulated_seconds, 34);
+  EXPECT_TRUE(with.at_rest);
+  EXPECT_LT(with.statistics.lost_mass, 0.01 * mass_of(with.original));
+  EXPECT_LT(on_top(with), 0.3 * on_top(without));
+}
+
+}  // namespace
+}  // namespace scree
