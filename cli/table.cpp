@@ -44,6 +44,7 @@ void print_comparison(const std::vector<Comparison>& comparison) {
 }
 
 void print_result(const RunResult& result) {
+  for (const std::string& effect : result.effects) fmt::print("effect {}\n", effect);
   for (const SeedResult& s : result.seeds)
     fmt::print(
         "seed {}: {} spheres, {:.1f} s simulated in {:.1f} s, {:.1f} M particle-steps/s, largest overlap "

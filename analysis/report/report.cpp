@@ -205,6 +205,7 @@ std::string facts(const RunResult& result) {
   fact("program", fmt::format("scree {}", html_escaped(result.version)));
   fact("engine", html_escaped(result.engine));
   fact("seeds", seeds);
+  for (const std::string& effect : result.effects) fact("effect", html_escaped(effect));
   fact("rock",
        fmt::format("{} spheres, {} t{}", count_text(particles / n), number_text(mass / n / 1000), each));
   if (fixed > 0) fact("fixed balls of the ground", count_text(fixed / n));

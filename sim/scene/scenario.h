@@ -200,9 +200,15 @@ struct EffectiveModel {
   Modifications changes;
   Grading grading;
   Material material;
+  EffectContext context;  ///< what the effects refer to
 };
 /// Throws as read_grading does.
 EffectiveModel effective_model(const Scenario& scenario);
+
+/// What of the scenario decides whether an effect acts.
+EffectScene effect_scene(const Scenario& scenario);
+/// The effects with their values, a line each; throws as read_grading does.
+std::vector<std::string> effects_in_words(const Scenario& scenario);
 
 /// The bench of an experiment that has one; null otherwise.
 const BenchSpec* bench_of(const Scenario& scenario);
@@ -222,11 +228,15 @@ struct ScenarioResult {
   std::vector<std::string> warnings;
 };
 
+/// What a scenario is read for: to be run as it stands, with all the files it asks for, or for its numbers
+/// alone, as ensembles and analyses do: then nothing that only its trajectory forbids is an error.
+enum class ReadFor { run, numbers };
+
 /// Reads, resolves `extends`, applies overrides ("material.mu=0.5"), checks everything (meshes and grading
 /// are opened too). `asset_dir` is the project's assets folder: gradings are found by name there, meshes by
 /// relative path; paths in a file are first taken relative to that file.
 ScenarioResult load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides,
-                             const std::filesystem::path& asset_dir);
+                             const std::filesystem::path& asset_dir, ReadFor use = ReadFor::run);
 
 /// JSON Schema (draft 2020-12) of a scenario file, for editors.
 std::string scenario_schema();

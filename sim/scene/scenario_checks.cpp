@@ -29,9 +29,9 @@ constexpr double kLeastFrameInterval = 1e-3;
 
 class Checks {
  public:
-  Checks(const Scenario& scenario, const fs::path& asset_dir, ReadNotes& notes,
+  Checks(const Scenario& scenario, const fs::path& asset_dir, ReadFor use, ReadNotes& notes,
          std::vector<std::string>& warnings)
-      : s_(scenario), asset_dir_(asset_dir), notes_(notes), warnings_(warnings) {}
+      : s_(scenario), asset_dir_(asset_dir), use_(use), notes_(notes), warnings_(warnings) {}
 
   void all() {
     meshes();
@@ -116,12 +116,14 @@ class Checks {
             use.values.front() != use.effect->absent && other.values.front() != other.effect->absent)
           fail(&use.values.front(), fmt::format("effects: {} and {} do not go together; take one of them",
                                                 use.effect->name, other.effect->name));
-    for (const EffectUse& use : s_.effects) {
-      const auto& acts_in = use.effect->experiments;
-      if (!acts_in.empty() && std::find(acts_in.begin(), acts_in.end(), experiment_type(s_)) == acts_in.end())
-        warnings_.push_back(fmt::format("effects.{}: changes nothing in an experiment of type {}",
-                                        use.effect->name, experiment_type(s_)));
-    }
+    const EffectScene scene = effect_scene(s_);
+    for (const EffectUse& use : s_.effects)
+      if (const std::string why = why_inert(*use.effect, scene); !why.empty())
+        warnings_.push_back(fmt::format("effects.{}: changes nothing {}", use.effect->name, why));
+    if (use_ == ReadFor::run && s_.output.trajectory && modifications(s_.effects, {}).breakage.on())
+      fail(&s_.effect(*find_effect("breakage"))->values.front(),
+           "effects.breakage: a trajectory has a row for each grain put in and none for fragments; set "
+           "output.trajectory to false");
   }
 
   // Piles that are asked for but never there.
@@ -386,6 +388,7 @@ class Checks {
 
   const Scenario& s_;
   const fs::path& asset_dir_;
+  const ReadFor use_;
   ReadNotes& notes_;
   std::vector<std::string>& warnings_;
   std::optional<Grading> grading_;
@@ -393,9 +396,9 @@ class Checks {
 
 }  // namespace
 
-void check_scenario(const Scenario& scenario, const fs::path& asset_dir, ReadNotes& notes,
+void check_scenario(const Scenario& scenario, const fs::path& asset_dir, ReadFor use, ReadNotes& notes,
                     std::vector<std::string>& warnings) {
-  Checks(scenario, asset_dir, notes, warnings).all();
+  Checks(scenario, asset_dir, use, notes, warnings).all();
 }
 
 void find_bullet_settings(Scenario& s, const fs::path& asset_dir, ReadNotes& notes) {
