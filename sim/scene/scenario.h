@@ -44,9 +44,10 @@ struct BenchSpec {
   double top_length = 40;    ///< m
   double floor_length = 80;  ///< m
   double width = 100;        ///< m, y from -width/2 to width/2
-  BaseLayer base_layer =
-      BaseLayer::homogeneous;  ///< fixed balls: 1 m (homogeneous), or 0.5 and 1 m (mixed, appendix F)
-  bool layer_on_top = true;    ///< they cover the bench top too, as in the thesis; without them it is plane
+  /// Fixed balls: of one size (homogeneous), or of that and half of it (mixed, appendix F).
+  BaseLayer base_layer = BaseLayer::homogeneous;
+  double ball_diameter = 1;  ///< m, of the (larger) balls; thesis setups: base_ball_diameter
+  bool layer_on_top = true;  ///< they cover the bench top too, as in the thesis; without them it is plane
 };
 
 enum class Release { open_gate, hoist };
@@ -118,7 +119,8 @@ struct ReposeLift {
   double floor_radius = 1.5;                           ///< half width of the floor, m
   std::optional<double> container_mu, container_mu_r;  ///< wall of the container; default the rock's own
   std::optional<double> floor_mu, floor_mu_r;
-  BaseLayer base_layer = BaseLayer::none;
+  BaseLayer base_layer = BaseLayer::none;  ///< on the floor, as on a bench
+  double ball_diameter = 1;                ///< of its balls, m
 };
 
 /// Buckets emptied one after another over the edge of a wall: the laboratory segregation test.

@@ -141,11 +141,15 @@ TEST_F(Cli, BadInputIsOneLineAndExitCodeTwo) {
     EXPECT_EQ(other.code, 2) << key;
     EXPECT_EQ(std::count(other.text.begin(), other.text.end(), '\n'), 1) << other.text;
   }
-  const Called breaks =
-      call("run " + small + " --set effects.breakage.fragility_kg_per_j=1 --out " + (folder / "x").string());
-  EXPECT_EQ(breaks.code, 2);
-  EXPECT_NE(breaks.text.find("add --set output.trajectory=false"), std::string::npos) << breaks.text;
-  EXPECT_EQ(std::count(breaks.text.begin(), breaks.text.end(), '\n'), 1) << breaks.text;
+  for (const std::string& command :
+       {std::string("validate "), "run --out " + (folder / "x").string() + " "}) {
+    const Called breaks = call(command + small +
+                               " --set experiment.bench.base_ball_diameter_m=0.5"
+                               " --set effects.breakage.fragility_kg_per_j=1");
+    EXPECT_EQ(breaks.code, 2);
+    EXPECT_NE(breaks.text.find("set output.trajectory to false"), std::string::npos) << breaks.text;
+    EXPECT_EQ(std::count(breaks.text.begin(), breaks.text.end(), '\n'), 1) << breaks.text;
+  }
   const Called set =
       call("run " + small + " --set material.mux=1 --set material.mu=-1 --out " + (folder / "x").string());
   EXPECT_EQ(set.code, 2);
