@@ -158,6 +158,37 @@ TEST_F(Cli, BadInputIsOneLineAndExitCodeTwo) {
   EXPECT_FALSE(fs::exists(folder / "x")) << "nothing is written before the input is good";
 }
 
+// Without damping half of the load still rolls when its time is over.
+TEST_F(Cli, AHeapWithoutAnAngleSaysWhy) {
+  const fs::path out = folder / "run";
+  const Called run = call("run " + std::string(SCREE_SOURCE_DIR) +
+                          "/scenarios/small_heap.yaml --set material.local_damping=0 --out " + out.string());
+  EXPECT_EQ(run.code, 0) << run.text;
+  EXPECT_EQ(run.text.find("nan"), std::string::npos) << run.text;
+  EXPECT_NE(run.text.find("no repose angle (reason below)"), std::string::npos) << run.text;
+  EXPECT_NE(run.text.find("note: seed 10001: no repose angle: not at rest"), std::string::npos) << run.text;
+  EXPECT_NE(slurp(out / "report.html").find("No repose angle: not at rest."), std::string::npos);
+}
+
+// Balls of 1 m on a bench of 0.5 m carry nearly all of the load above its crest.
+TEST_F(Cli, BallsTooLargeForTheBenchAreTold) {
+  const fs::path out = folder / "run";
+  const Called run = call("run " + small + " --set experiment.bench.height_m=0.5 --out " + out.string() +
+                          " --set effects.cohesion.bond_number=0.01");
+  EXPECT_EQ(run.code, 0) << run.text;
+  for (const char* text : {"balls of 1 m on a bench 0.5 m high, more than a fifth of it (0.1 m)",
+                           "of the rock lies above the crest's height and belongs to no section",
+                           "effect cohesion: bond_number 0.01; gamma "})
+    EXPECT_NE(run.text.find(text), std::string::npos) << text << '\n' << run.text;
+  const std::string report = slurp(out / "report.html");
+  EXPECT_NE(report.find("belongs to no section.</strong>"), std::string::npos);
+  EXPECT_NE(report.find("<dt>effect</dt><dd>cohesion: bond_number 0.01; gamma "), std::string::npos);
+  const Called fine = call("validate " + small + " --set experiment.bench.base_ball_diameter_m=0.6" +
+                           " --set effects.cohesion.bond_number=0.01");
+  EXPECT_EQ(fine.text.find("warning"), std::string::npos) << "a fifth of 3 m\n" << fine.text;
+  EXPECT_NE(fine.text.find("effect cohesion: bond_number 0.01; gamma "), std::string::npos) << fine.text;
+}
+
 // Effects on measurement change the gradings of the same pile, and nothing when absent.
 TEST_F(Cli, EffectsOnMeasurementChangeGradingsAlone) {
   const auto run = [&](const std::string& name, const std::string& set) {
