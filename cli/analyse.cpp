@@ -30,7 +30,8 @@ std::optional<scree::Scenario> scenario_of(const AnalyseOptions& options) {
   }
   if (!options.scenario.empty()) {
     if (!is_of_kind(options.scenario, scree::FileKind::scenario)) return std::nullopt;
-    scree::ScenarioResult loaded = scree::load_scenario(options.scenario, options.overrides, asset_dir());
+    scree::ScenarioResult loaded =
+        scree::load_scenario(options.scenario, options.overrides, asset_dir(), scree::ReadFor::numbers);
     if (!nothing_wrong(loaded.errors, loaded.warnings)) return std::nullopt;
     return std::move(loaded.scenario);
   }

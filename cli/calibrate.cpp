@@ -257,7 +257,8 @@ int run_equivalence(const CalibrateOptions& options) {
   const scree::EquivalenceSpecResult loaded = scree::load_equivalence(options.file);
   if (!nothing_wrong(loaded.errors)) return kBadInput;
   const scree::EquivalenceSpec& spec = loaded.spec;
-  const scree::ScenarioResult first = scree::load_scenario(spec.scenario, spec.fixed, asset_dir());
+  const scree::ScenarioResult first =
+      scree::load_scenario(spec.scenario, spec.fixed, asset_dir(), scree::ReadFor::numbers);
   if (!first.errors.empty()) {
     fmt::print(stderr, "{}\n", first.errors.front().text());
     return kBadInput;
@@ -274,7 +275,9 @@ int run_equivalence(const CalibrateOptions& options) {
     nodes = scree::fit_equivalence(spec, [&](const std::vector<scree::EquivalenceRun>& runs) {
       std::vector<std::pair<scree::ScenarioResult, std::uint64_t>> scenarios;
       for (const scree::EquivalenceRun& run : runs)
-        scenarios.emplace_back(scree::load_scenario(spec.scenario, run.overrides, asset_dir()), run.seed);
+        scenarios.emplace_back(
+            scree::load_scenario(spec.scenario, run.overrides, asset_dir(), scree::ReadFor::numbers),
+            run.seed);
       const auto found = simulate(scenarios, *store, options);
       std::vector<double> values;
       for (std::size_t k = 0; k < runs.size(); ++k) {

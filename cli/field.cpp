@@ -73,7 +73,8 @@ std::optional<Inputs> read_inputs(const FieldCliOptions& options) {
 std::optional<WrittenDataset> dataset_of(const FieldCliOptions& options, const scree::FieldAnalysis& field,
                                          int sections) {
   if (!is_of_kind(options.scenario, scree::FileKind::scenario)) return std::nullopt;
-  scree::ScenarioResult loaded = scree::load_scenario(options.scenario, {}, asset_dir());
+  scree::ScenarioResult loaded =
+      scree::load_scenario(options.scenario, {}, asset_dir(), scree::ReadFor::numbers);
   if (!nothing_wrong(loaded.errors)) return std::nullopt;
   scree::FieldDatasetRequest request{
       options.scenario, {}, options.gradings.filename().string(), options.observables};

@@ -188,7 +188,8 @@ bool may_begin(const ImageOptions& options, std::optional<scree::Scenario>& scen
   }
   if (!options.scenario.empty()) {
     if (!is_of_kind(options.scenario, scree::FileKind::scenario)) return false;
-    scree::ScenarioResult loaded = scree::load_scenario(options.scenario, {}, asset_dir());
+    scree::ScenarioResult loaded =
+        scree::load_scenario(options.scenario, {}, asset_dir(), scree::ReadFor::numbers);
     if (!nothing_wrong(loaded.errors)) return false;
     if (options.photos.size() == 1 && !options.relative_uncertainty) {
       fmt::print(stderr,

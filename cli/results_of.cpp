@@ -10,6 +10,7 @@
 #include "analysis/pile/slope_profile.h"
 #include "analysis/pile/toe_share.h"
 #include "analysis/results/outputs.h"
+#include "analysis/results/summary.h"
 #include "scree_version.h"
 #include "sim/scene/ground.h"
 #include "sim/scene/watch.h"
@@ -81,7 +82,8 @@ EnergyTerms energy_terms(const EnergyBalance& balance) {
            {"lost", "spheres that left the model", taken_out, a.lost_other}},
           balance.put_in(),
           balance.error(),
-          balance.relative_error()};
+          balance.relative_error(),
+          std::abs(balance.relative_error()) <= kMostEnergyError};
 }
 
 }  // namespace
@@ -185,6 +187,7 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
   result.notes = std::move(notes);
   result.wall_seconds = wall_seconds;
   if (const BenchSpec* bench = bench_of(scenario)) result.bench_height = bench->height;
+  result.effects = effects_in_words(scenario);
   result.comparison = compare_with_reference(outputs_of(result.seeds), reference, scenario.compare);
 
   for (std::string& note : comparison_notes(result.comparison)) result.notes.push_back(std::move(note));
@@ -211,6 +214,8 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
           fmt::format("seed {}: no cone can be fitted to the heap, and so it has no sections; more or larger "
                       "buckets may help",
                       s.seed));
+    if (const std::string why = why_no_repose_angle(s); !why.empty())
+      result.notes.push_back(fmt::format("seed {}: no repose angle: {}", s.seed, why));
   }
   const bool impulse = scenario.engine == EngineKind::impulse;
   if (overlap > kOverlapWarning && impulse)
@@ -244,8 +249,9 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
         "{} contacts with meshes were left out because a sphere touched more than {} surfaces at once",
         crowded, kMeshContactSlots));
   if (left_out > 0 && bench_of(scenario))
-    result.notes.push_back(fmt::format("{:.1f} t lie above the crest's height and belong to no section",
-                                       left_out / 1000 / static_cast<double>(result.seeds.size())));
+    result.notes.push_back(fmt::format(
+        "{:.1f} t ({:.1f} % of the rock) lie above the crest's height and belong to no section",
+        left_out / 1000 / static_cast<double>(result.seeds.size()), 100 * share_in_no_section(result)));
   const Measurement measured = measurement_of(scenario);
   if (!measured.truthful())
     result.notes.emplace_back(

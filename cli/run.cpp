@@ -58,19 +58,6 @@ struct Plan {
   bool checkpoints() const { return record.checkpoint_minutes > 0; }
 };
 
-// False, with messages, if the scenario cannot be run.
-bool check(const scree::ScenarioResult& loaded) {
-  if (!nothing_wrong(loaded.errors, loaded.warnings)) return false;
-  if (loaded.scenario.output.trajectory && !loaded.scenario.effects.empty() &&
-      scree::effective_model(loaded.scenario).changes.breakage.on()) {
-    fmt::print(stderr,
-               "scree: effects.breakage: a trajectory has a row for each grain put in and none for "
-               "fragments; add --set output.trajectory=false\n");
-    return false;
-  }
-  return true;
-}
-
 // These throw std::runtime_error with what to do about it.
 
 // Every seed's pile is there and fits.
@@ -87,7 +74,7 @@ void check_piles(const Plan& plan) {
 std::optional<Plan> plan_new(const RunOptions& options) {
   if (!is_of_kind(options.file, scree::FileKind::scenario)) return std::nullopt;
   scree::ScenarioResult loaded = scree::load_scenario(options.file, options.overrides, asset_dir());
-  if (!check(loaded)) return std::nullopt;
+  if (!nothing_wrong(loaded.errors, loaded.warnings)) return std::nullopt;
   Plan plan;
   plan.scenario = std::move(loaded.scenario);
   plan.scenario.seeds = chosen_seeds(plan.scenario, options.seeds);
@@ -121,7 +108,7 @@ std::optional<Plan> plan_resumed(const RunOptions& options) {
   plan.lock = std::make_unique<FolderLock>(plan.out, kDying);
   const fs::path file = plan.out / "scenario.yaml";
   scree::ScenarioResult loaded = scree::load_scenario(file, {}, asset_dir());
-  if (!check(loaded)) return std::nullopt;
+  if (!nothing_wrong(loaded.errors, loaded.warnings)) return std::nullopt;
   plan.scenario = std::move(loaded.scenario);
   if (plan.record.program != program_version())
     throw std::runtime_error(

@@ -44,13 +44,14 @@ void print_comparison(const std::vector<Comparison>& comparison) {
 }
 
 void print_result(const RunResult& result) {
+  for (const std::string& effect : result.effects) fmt::print("effect {}\n", effect);
   for (const SeedResult& s : result.seeds)
     fmt::print(
         "seed {}: {} spheres, {:.1f} s simulated in {:.1f} s, {:.1f} M particle-steps/s, largest overlap "
-        "{:.0f} %, energy closed to {}, lost {}{}\n",
+        "{:.0f} %, energy {}, lost {}{}\n",
         s.seed, s.particles, s.simulated_seconds, s.wall_seconds, s.particle_steps / s.wall_seconds / 1e6,
         100 * s.largest_overlap_ratio,
-        s.energy ? fmt::format("{:.2f} %", 100 * std::abs(s.energy->relative_error)) : "- (impulse)",
+        s.energy ? energy_in_words(s.energy->relative_error, s.energy->closed) : "- (impulse)",
         s.lost_particles, s.at_rest ? "" : "  (not at rest)");
   if (const SectionTable* layout = section_layout(result, 0)) {
     fmt::print("\n{:<8} {:>6} {:>9} {:>16} {:>8} {:>9}\n", "section", "x/L", "mass t", "chi", "D50 m",
@@ -63,6 +64,9 @@ void print_result(const RunResult& result) {
                  with_std(chi.mean, chi.std), mean([](const Section& x) { return x.d50; }).mean,
                  mean([](const Section& x) { return x.d50_rel; }).mean);
     }
+    if (const double outside = share_in_no_section(result); outside > kMuchInNoSection)
+      fmt::print("{:.0f} % of the rock lies above the crest's height and belongs to no section\n",
+                 100 * outside);
   }
   std::vector<double> rebound;
   for (const SeedResult& s : result.seeds)
@@ -79,10 +83,12 @@ void print_result(const RunResult& result) {
       half.push_back(s.repose->half_coverage);
     }
   if (!angle.empty()) {
-    const MeanStd a = mean_std(angle), o = mean_std(over), h = mean_std(half);
-    fmt::print(
-        "\nrepose angle (slope of the flank) {} deg; height over radius {}; over half-covered radius {}\n",
-        with_std(a.mean, a.std), with_std(o.mean, o.std), with_std(h.mean, h.std));
+    const auto degrees = [](const MeanStd& a) { return a.n > 0 ? with_std(a.mean, a.std) : "-"; };
+    const MeanStd a = mean_std(angle);
+    fmt::print("\n{}; height over radius {}; over half-covered radius {}\n",
+               a.n > 0 ? fmt::format("repose angle (slope of the flank) {} deg", degrees(a))
+                       : "no repose angle (reason below)",
+               degrees(mean_std(over)), degrees(mean_std(half)));
   }
   print_comparison(result.comparison);
   for (const std::string& failure : result.failures) fmt::print("\nFAILED: {}\n", failure);

@@ -105,7 +105,7 @@ int run_twin(const TwinOptions& options) {
                                               run_through(*hidden, options.ensemble));
     const std::vector<std::string> left_out = scree::write_dataset(twin.data, out);
     if (!left_out.empty()) fmt::print("note: without scatter, left out: {}\n", fmt::join(left_out, ", "));
-    scree::write_text_file(answer, scree::twin_answer(model, spec, twin.truth));
+    scree::write_text_file(answer, scree::twin_answer(model, spec, twin.truth, asset_dir()));
   } catch (const scree::TooWeak& error) {
     fmt::print(stderr, "{}\n", error.what());
     std::error_code left;  // an empty folder or a store more is no reason to fail

@@ -127,5 +127,6 @@ int run_validate(const std::filesystem::path& file, const std::vector<std::strin
              scree::experiment_type(scenario),
              scenario.engine == scree::EngineKind::rrlinear ? "rrlinear" : "impulse", grading.name(),
              mass / 1000, scree::estimated_spheres(scenario), seeds, effects);
+  for (const std::string& effect : scree::effects_in_words(scenario)) fmt::print("effect {}\n", effect);
   return 0;
 }

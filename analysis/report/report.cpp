@@ -178,8 +178,9 @@ std::string facts(const RunResult& result) {
          lost_mass = 0;
   double shortest = std::numeric_limits<double>::max(), longest = 0;
   std::string seeds;
-  bool at_rest = true, interrupted = false;
+  bool at_rest = true, interrupted = false, closed = true;
   for (const SeedResult& seed : result.seeds) {
+    closed = closed && (!seed.energy || seed.energy->closed);
     seeds += fmt::format("{}{}", seeds.empty() ? "" : ", ", seed.seed);
     particles += static_cast<double>(seed.particles);
     fixed += static_cast<double>(seed.fixed.size());
@@ -205,6 +206,7 @@ std::string facts(const RunResult& result) {
   fact("program", fmt::format("scree {}", html_escaped(result.version)));
   fact("engine", html_escaped(result.engine));
   fact("seeds", seeds);
+  for (const std::string& effect : result.effects) fact("effect", html_escaped(effect));
   fact("rock",
        fmt::format("{} spheres, {} t{}", count_text(particles / n), number_text(mass / n / 1000), each));
   if (fixed > 0) fact("fixed balls of the ground", count_text(fixed / n));
@@ -219,10 +221,10 @@ std::string facts(const RunResult& result) {
   if (const double error = largest_energy_error(result);
       std::any_of(result.seeds.begin(), result.seeds.end(),
                   [](const SeedResult& seed) { return seed.energy.has_value(); }))
-    fact("energy balance", std::isfinite(error) ? fmt::format("closed to {} % of what was put in{}",
-                                                              decimals_text(100 * std::abs(error), 2),
-                                                              n > 1 ? ", the seed that is furthest off" : "")
-                                                : std::string("not a number"));
+    fact("energy balance", fmt::format("{}{}", energy_in_words(error, closed),
+                                       !std::isfinite(error) ? ""
+                                       : n > 1 ? " of what was put in, the seed that is furthest off"
+                                               : " of what was put in"));
   fact("lost from the model", lost > 0
                                   ? fmt::format("{} spheres, {} t{}", count_text(lost),
                                                 number_text(lost_mass / 1000), n > 1 ? " over all seeds" : "")

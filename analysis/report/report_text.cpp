@@ -63,12 +63,19 @@ std::string angle_sentences(const RunResult& result) {
   std::string out;
   if (!rebound.empty())
     out += fmt::format("<strong>The rock rebounds to {} m.</strong> ", with_std(mean_std(rebound), 3));
-  if (!repose.empty())
-    out += fmt::format("<strong>The heap stands at a repose angle of {}°.</strong> ",
-                       with_std(mean_std(repose), 1));
   const bool at_rest = std::all_of(result.seeds.begin(), result.seeds.end(),
                                    [](const SeedResult& seed) { return seed.at_rest; });
-  if (!slope.empty())
+  if (const MeanStd angle = mean_std(repose); angle.n > 0)
+    out += fmt::format(
+        "<strong>{} {}°.</strong> ",
+        at_rest ? "The heap stands at a repose angle of" : "The heap is not at rest yet; its flank stands at",
+        with_std(angle, 1));
+  else if (!repose.empty())
+    out += fmt::format("<strong>No repose angle: {}.</strong> ",
+                       html_escaped(why_no_repose_angle(
+                           *std::find_if(result.seeds.begin(), result.seeds.end(),
+                                         [](const SeedResult& seed) { return seed.repose.has_value(); }))));
+  if (mean_std(slope).n > 0)
     out += fmt::format("{} {}°. ",
                        at_rest ? "The slope came to rest at" : "The slope is not at rest yet; it stands at",
                        with_std(mean_std(slope), 1));
@@ -207,7 +214,15 @@ Verdict verdict(const Comparison& comparison) {
 
 std::string lead_paragraphs(const RunResult& result) {
   const std::string answer = segregation_sentence(result);
-  std::string out = fmt::format("<p class=\"lead\">{} {}</p>\n", answer, angle_sentences(result));
+  const double outside = share_in_no_section(result);
+  std::string out = fmt::format(
+      "<p class=\"lead\">{}{} {}</p>\n",
+      outside > kMuchInNoSection
+          ? fmt::format("<strong>{} % of the rock lies above the crest's height and belongs to no "
+                        "section.</strong> ",
+                        decimals_text(100 * outside, 0))
+          : "",
+      answer, angle_sentences(result));
   const std::size_t seeds = result.seeds.size();
   out += fmt::format("<p>{} The values are {}.</p>\n", comparison_sentence(result),
                      seeds == 1

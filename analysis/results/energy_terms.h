@@ -20,6 +20,7 @@ struct EnergyTerms {
   double put_in = 0;          ///< J; terms that gave energy, without those that took
   double error = 0;           ///< J
   double relative_error = 0;  ///< of what was put in
+  bool closed = true;         ///< the error is small enough for the run to count
 };
 
 }  // namespace scree

@@ -100,6 +100,7 @@ struct RunResult {
   std::string title, scenario, engine, version;
   std::vector<SeedResult> seeds;
   std::vector<Comparison> comparison;
+  std::vector<std::string> effects;   ///< of the scenario with their values, a line each
   std::vector<std::string> failures;  ///< of the watch, a line each; none: the run counts
   std::vector<std::string> notes;     ///< warnings to the reader: overlaps above 10 %, lost mass, not at rest
   double bench_height = 0;            ///< m; 0 without a bench

@@ -317,4 +317,29 @@ double largest_energy_error(const RunResult& result) {
   return largest;
 }
 
+std::string energy_in_words(double relative_error, bool closed) {
+  return std::isfinite(relative_error)
+             ? fmt::format("{} {:.2f} %", closed ? "closed to" : "open by", 100 * std::abs(relative_error))
+             : "not a number";
+}
+
+double share_in_no_section(const RunResult& result) {
+  double outside = 0, all = 0;
+  for (const SeedResult& seed : result.seeds) {
+    if (seed.sections.empty() || !(result.bench_height > 0)) continue;
+    outside += seed.sections.front().mass_outside;
+    all += seed.sections.front().mass_outside;
+    for (const Section& section : seed.sections.front().sections) all += section.mass;
+  }
+  return all > 0 ? outside / all : 0;
+}
+
+std::string why_no_repose_angle(const SeedResult& seed) {
+  if (!seed.repose || std::isfinite(seed.repose->angle)) return "";
+  if (!seed.at_rest) return "not at rest";
+  return "no flank: the mean surface about the heap's axis does not fall from 80 % to 20 % of its height "
+         "over "
+         "two rings or more";
+}
+
 }  // namespace scree

@@ -18,6 +18,18 @@ void write_summary(const RunResult& result, const std::filesystem::path& file);
 /// has one.
 double largest_energy_error(const RunResult& result);
 
+/// "closed to 0.02 %", or "open by 3.10 %" where the balance does not hold.
+std::string energy_in_words(double relative_error, bool closed);
+
+/// Share of the rock in the first table of sections that lies above the crest's height and so in none of
+/// them, over all seeds; 0 without a bench.
+double share_in_no_section(const RunResult& result);
+inline constexpr double kMuchInNoSection = 0.1;  ///< above it sections do not stand for the pile
+
+/// Why the heap of a repose test has no repose angle: "not at rest" or "no flank: ..."; empty if it has one,
+/// and for other experiments.
+std::string why_no_repose_angle(const SeedResult& seed);
+
 /// What other programs need of a summary.json.
 struct StoredRun {
   std::string title;

@@ -245,7 +245,8 @@ ScenarioResult calibrated_scenario(const CalibrationSpec& spec, const std::files
                                    const std::filesystem::path& asset_dir) {
   std::vector<std::string> texts;
   for (const double value : values) texts.push_back(fmt::format("{:.6g}", value));
-  return load_scenario(scenario, overrides_of(spec.variation, names_of(spec), texts), asset_dir);
+  return load_scenario(scenario, overrides_of(spec.variation, names_of(spec), texts), asset_dir,
+                       ReadFor::numbers);
 }
 
 std::string why_not_run(const CalibrationSpec& spec, const std::filesystem::path& asset_dir) {

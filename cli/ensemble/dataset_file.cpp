@@ -74,7 +74,7 @@ std::optional<Dataset::Experiment> read_experiment(const YamlEntry& entry, const
   const auto scenario = scenario_at(entry.value, file, true, reader);
   const Variation variation = read_variation(entry.value, {}, reader);
   if (!scenario) return std::nullopt;
-  ScenarioResult loaded = load_scenario(*scenario, variation.fixed, asset_dir);
+  ScenarioResult loaded = load_scenario(*scenario, variation.fixed, asset_dir, ReadFor::numbers);
   for (const ScenarioError& error : loaded.errors)
     reader.fail(entry.value.place, fmt::format("experiments.{} is no scenario: {}", entry.key, error.text()));
   if (!loaded.errors.empty()) return std::nullopt;

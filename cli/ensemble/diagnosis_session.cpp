@@ -156,8 +156,8 @@ ExperimentRuns runs_of(const DiagnosisModel& model, const ModelSpace& space,
       return space.effects[e.effect].acts_in(experiment.name);
     });
     if (!effects.empty() && acting < (run.where_all_act ? std::ssize(effects) : 1)) continue;
-    const ScenarioResult loaded =
-        load_scenario(experiment.file, overrides_at(model, space, experiment, run.at), asset_dir);
+    const ScenarioResult loaded = load_scenario(
+        experiment.file, overrides_at(model, space, experiment, run.at), asset_dir, ReadFor::numbers);
     if (!loaded.errors.empty())
       throw std::runtime_error(
           fmt::format("experiment {}: {}", experiment.name, loaded.errors.front().text()));
@@ -239,7 +239,7 @@ DiagnosisSession::DiagnosisSession(const DiagnosisModel& model, JoinedData data,
       data_(std::move(data)),
       asset_dir_(std::move(asset_dir)),
       threads_(threads),
-      space_(space_of(model, data_.experiments, without)) {
+      space_(space_of(model, data_.experiments, without, asset_dir_)) {
   design_ = in_every_experiment(design_of(space_, model.simulations));
   learnt_.resize(data_.experiments.size());
   forecasts_.resize(data_.experiments.size());

@@ -106,7 +106,8 @@ std::vector<std::string> why_not_simulated(const DiagnosisModel& model, const Da
   for (const double end : {-1.0, 1.0}) {
     const ModelPoint point{Eigen::VectorXd::Constant(static_cast<Eigen::Index>(model.base.size()), end), {}};
     const ScenarioResult loaded =
-        load_scenario(experiment.file, overrides_at(model, {model.base, {}}, experiment, point), asset_dir);
+        load_scenario(experiment.file, overrides_at(model, {model.base, {}}, experiment, point), asset_dir,
+                      ReadFor::numbers);
     for (const ScenarioError& error : loaded.errors)
       reasons.push_back(fmt::format("experiment {}: {}", experiment.name, error.text()));
     if (!reasons.empty()) break;
@@ -150,8 +151,15 @@ DiagnosisModelResult load_model(const fs::path& file, const fs::path& asset_dir)
 }
 
 ModelSpace space_of(const DiagnosisModel& model, const std::vector<Dataset::Experiment>& experiments,
-                    const std::vector<std::string>& without) {
+                    const std::vector<std::string>& without, const fs::path& asset_dir) {
   ModelSpace space{model.base, {}};
+  const ModelPoint middle{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.base.size())), {}};
+  std::vector<EffectScene> scenes;
+  for (const Dataset::Experiment& experiment : experiments)
+    scenes.push_back(
+        effect_scene(load_scenario(experiment.file, overrides_at(model, space, experiment, middle), asset_dir,
+                                   ReadFor::numbers)
+                         .scenario));
   for (const std::string& name : model.effects) {
     if (std::find(without.begin(), without.end(), name) != without.end()) continue;
     const Effect& effect = *find_effect(name);
@@ -166,12 +174,8 @@ ModelSpace space_of(const DiagnosisModel& model, const std::vector<Dataset::Expe
       if (candidate.axes.empty() || p.prior_low < p.prior_high)
         candidate.axes.push_back(
             {fmt::format("effects.{}.{}", name, p.key), std::string(p.unit), p.prior_low, p.prior_high});
-    for (const Dataset::Experiment& experiment : experiments) {
-      const auto& types = effect.experiments;
-      if (types.empty() ||
-          std::find(types.begin(), types.end(), experiment_type(experiment.scenario)) != types.end())
-        candidate.acts.push_back(experiment.name);
-    }
+    for (std::size_t e = 0; e < experiments.size(); ++e)
+      if (why_inert(effect, scenes[e]).empty()) candidate.acts.push_back(experiments[e].name);
     if (!candidate.acts.empty()) space.effects.push_back(std::move(candidate));
   }
   return space;

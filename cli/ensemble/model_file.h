@@ -26,7 +26,7 @@ struct SimulationCounts {
   int effect = 10;  ///< of each effect
   int check = 4;    ///< of a fitted model, with fresh seeds
   int rounds = 4;   ///< of simulating fitted models and fitting again, at most: of one effect, from when a
-                   ///< pair first leads, and of a name that its simulations have not borne out
+                    ///< pair first leads, and of a name that its simulations have not borne out
 };
 
 struct DiagnosisModel {
@@ -61,9 +61,9 @@ std::vector<std::string> why_not_simulated(const DiagnosisModel& model, const Da
                                            const std::filesystem::path& asset_dir);
 
 /// The space that a diagnosis of these experiments searches: the model's effects that act in any of them,
-/// less those of `without`.
+/// with what the model sets, less those of `without`.
 ModelSpace space_of(const DiagnosisModel& model, const std::vector<Dataset::Experiment>& experiments,
-                    const std::vector<std::string>& without);
+                    const std::vector<std::string>& without, const std::filesystem::path& asset_dir);
 
 /// Overrides "key=value" that make an experiment's scenario that of a point of the space.
 std::vector<std::string> overrides_at(const DiagnosisModel& model, const ModelSpace& space,

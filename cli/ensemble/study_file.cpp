@@ -54,7 +54,7 @@ void read_option(const YamlNode& option, const fs::path& file, const fs::path& a
   const auto per_load = rate(option, "cost_per_load", reader),
              per_hour = rate(option, "blade_per_hour", reader);
   if (!scenario || !reader.good()) return;
-  ScenarioResult loaded = load_scenario(*scenario, variation.fixed, asset_dir);
+  ScenarioResult loaded = load_scenario(*scenario, variation.fixed, asset_dir, ReadFor::numbers);
   for (const ScenarioError& error : loaded.errors)
     reader.fail(option.place, "an option is no scenario: " + error.text());
   if (!loaded.errors.empty()) return;

@@ -168,8 +168,8 @@ SweepResult load_sweep(const fs::path& file, const fs::path& asset_dir) {
   if (!reader.good()) return result;
 
   for (SweepPoint& point : sweep.points) {
-    ScenarioResult loaded =
-        load_scenario(*scenario, overrides_of(variation, sweep.parameters, point.values), asset_dir);
+    ScenarioResult loaded = load_scenario(*scenario, overrides_of(variation, sweep.parameters, point.values),
+                                          asset_dir, ReadFor::numbers);
     point.scenario = std::move(loaded.scenario);
     if (loaded.errors.empty()) continue;
     // Other points are wrong in the same way, most likely.
@@ -192,7 +192,7 @@ SweepResult load_cases(const std::vector<fs::path>& files, int seeds, const fs::
   result.sweep.name = "cases";
   result.sweep.parameters = {"case"};
   for (const fs::path& file : files) {
-    ScenarioResult loaded = load_scenario(file, {}, asset_dir);
+    ScenarioResult loaded = load_scenario(file, {}, asset_dir, ReadFor::numbers);
     result.errors.insert(result.errors.end(), loaded.errors.begin(), loaded.errors.end());
     result.warnings.insert(result.warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
     auto& all = loaded.scenario.seeds;

@@ -108,7 +108,7 @@ class TwinMaker {
         asset_dir_(asset_dir),
         hidden_(hidden),
         experiments_(experiments_of(model)),
-        space_(space_of(model, experiments_, {})),
+        space_(space_of(model, experiments_, {}, asset_dir_)),
         base_model_(learn_base_model(design)),
         error_variances_(variances_of_errors()),
         covariance_(covariance_of_means()),
@@ -335,8 +335,9 @@ Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::fil
   return TwinMaker(model, spec, asset_dir, design, hidden).make();
 }
 
-std::string twin_answer(const DiagnosisModel& model, const TwinSpec& spec, const TwinTruth& truth) {
-  const ModelSpace space = space_of(model, experiments_of(model), {});
+std::string twin_answer(const DiagnosisModel& model, const TwinSpec& spec, const TwinTruth& truth,
+                        const std::filesystem::path& asset_dir) {
+  const ModelSpace space = space_of(model, experiments_of(model), {}, asset_dir);
   nlohmann::ordered_json answer;
   answer["seed"] = spec.seed;
   answer["repeats"] = spec.repeats;

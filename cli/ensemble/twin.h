@@ -47,6 +47,7 @@ Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::fil
                const RunThrough& design, const RunThrough& hidden);
 
 /// The sealed answer: JSON with effects, values and base parameters.
-std::string twin_answer(const DiagnosisModel& model, const TwinSpec& spec, const TwinTruth& truth);
+std::string twin_answer(const DiagnosisModel& model, const TwinSpec& spec, const TwinTruth& truth,
+                        const std::filesystem::path& asset_dir);
 
 }  // namespace scree

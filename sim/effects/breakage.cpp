@@ -16,7 +16,7 @@ Effect breakage() {
           "between, until their volumes add up to that of the grain. Fragments do not break while they "
           "grow, and grains whose fragments would be finer than the grading do not break. A load at rest "
           "counts like an impact; soft spheres (1 MPa) store more of it than rock does. The scatter of "
-          "strength is left out.",
+          "strength is left out. A trajectory has no rows for fragments: output.trajectory must be false.",
       .source =
           "Vogel & Peukert, Powder Technol. 129 (2003): breakage by energy per mass, of a strength that "
           "rises as size falls; Tavares & King, Int. J. Miner. Process. 54 (1998): fracture energies of "

@@ -56,11 +56,11 @@ std::string effect_page(const Effect& effect) {
                         with_unit(fmt::format("{:g}", p.standard), p.unit),
                         range(p.prior_low, p.prior_high, p.unit));
   text += fmt::format(
-      "\nAbsent at `{}: {:g}`. Acts on {}, in {}.\n\nSource: {}\n", effect.parameters.front().key,
+      "\nAbsent at `{}: {:g}`. Acts on {}, in {}{}.\n\nSource: {}\n", effect.parameters.front().key,
       effect.absent, effect.measures ? "what is analysed, not on the motion" : "the motion",
       effect.experiments.empty() ? std::string("all experiments")
                                  : fmt::format("experiments of type {}", fmt::join(effect.experiments, ", ")),
-      effect.source);
+      effect.needs ? fmt::format(" with {}", effect.needs->words) : "", effect.source);
   return text;
 }
 

@@ -5,7 +5,9 @@
 // An effect is one file: its words, its parameters, and a function that says what it changes in a model. The
 // first parameter is its amplitude; at the value `absent` nothing is changed and a run gives the same numbers
 // as without the effect, bit by bit.
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -44,6 +46,21 @@ struct EffectContext {
   /// Surface energy (J/m2) with which two spheres of D50 pull each other with `bond_number` times their
   /// weight.
   double surface_energy(double bond_number) const;
+  /// Weight of a grain of D50, N.
+  double weight() const;
+};
+
+/// What of a scenario decides whether an effect changes anything in it.
+struct EffectScene {
+  std::string_view experiment;  ///< its type
+  bool gate_opens = true;       ///< loads leave a truck when its gate opens
+  bool damped_flight = true;    ///< local damping acts in flight
+};
+
+/// What an effect needs of a scenario beside the type of its experiment.
+struct EffectNeed {
+  bool EffectScene::*given;
+  std::string_view words;  ///< key and value: "experiment.truck.release open_gate"
 };
 
 struct EffectParameter {
@@ -65,9 +82,12 @@ struct Effect {
   double absent;  ///< amplitude at which nothing is changed
   /// Experiments in which it changes anything; empty: all.
   std::vector<std::string_view> experiments;
+  std::optional<EffectNeed> needs = {};  ///< without it nothing is changed either
   void (*apply)(std::span<const double> values, const EffectContext& context, Modifications& model);
   bool measures = false;           ///< acts on what is analysed, not on the motion
   std::string_view excludes = {};  ///< name of an effect that it cannot go with
+  /// What the amplitude comes to in absolute units, for an effect whose amplitude does not show it.
+  std::string (*in_units)(std::span<const double> values, const EffectContext& context) = nullptr;
 };
 
 /// All effects there are, in the order of the documentation.
@@ -81,6 +101,12 @@ struct EffectUse {
   const Effect* effect;
   std::vector<double> values;  ///< of its parameters
 };
+
+/// Why an effect changes nothing in such a scene: "in an experiment of type drop_test"; empty: it acts.
+std::string why_inert(const Effect& effect, const EffectScene& scene);
+
+/// Name, values of all parameters, and what they come to in absolute units: "cohesion: bond_number 1; ...".
+std::string effect_in_words(const EffectUse& use, const EffectContext& context);
 
 /// What all of these together change.
 Modifications modifications(std::span<const EffectUse> uses, const EffectContext& context);

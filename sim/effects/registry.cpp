@@ -1,5 +1,7 @@
 #include "sim/effects/registry.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numbers>
 
@@ -24,8 +26,29 @@ const Effect* find_effect(std::string_view name) {
 
 double EffectContext::surface_energy(double bond_number) const {
   // 2 pi gamma Rbar = Bo m g with Rbar = D50 / 4.
-  const double weight = density * std::numbers::pi / 6 * d50 * d50 * d50 * gravity;
-  return bond_number * weight / (2 * std::numbers::pi * 0.25 * d50);
+  return bond_number * weight() / (2 * std::numbers::pi * 0.25 * d50);
+}
+
+double EffectContext::weight() const {
+  return density * std::numbers::pi / 6 * d50 * d50 * d50 * gravity;
+}
+
+std::string why_inert(const Effect& effect, const EffectScene& scene) {
+  const auto& types = effect.experiments;
+  if (!types.empty() && std::find(types.begin(), types.end(), scene.experiment) == types.end())
+    return fmt::format("in an experiment of type {}", scene.experiment);
+  if (effect.needs && !(scene.*effect.needs->given)) return fmt::format("without {}", effect.needs->words);
+  return "";
+}
+
+std::string effect_in_words(const EffectUse& use, const EffectContext& context) {
+  std::string text;
+  for (std::size_t k = 0; k < use.values.size(); ++k)
+    text += fmt::format("{}{} {:g}", k == 0 ? fmt::format("{}: ", use.effect->name) : ", ",
+                        use.effect->parameters[k].key, use.values[k]);
+  if (use.effect->in_units != nullptr && use.values.front() != use.effect->absent)
+    text += "; " + use.effect->in_units(use.values, context);
+  return text;
 }
 
 Modifications modifications(std::span<const EffectUse> uses, const EffectContext& context) {

@@ -19,6 +19,7 @@ Effect release_speed() {
                       .doc = "Speed along the bed when the gate opens."}},
       .absent = 0,
       .experiments = {"end_dump"},
+      .needs = EffectNeed{&EffectScene::gate_opens, "experiment.truck.release open_gate"},
       .apply = [](std::span<const double> v, const EffectContext&,
                   Modifications& model) { model.release_speed += v[0]; },
   };

@@ -1,3 +1,7 @@
+#include <fmt/format.h>
+
+#include <numbers>
+
 #include "sim/effects/registry.h"
 
 namespace scree {
@@ -11,7 +15,9 @@ Effect sticky_tools() {
           "bed or bucket when all is at rest is carried back; it is not in the pile (carried_back_t).",
       .equation =
           "Contacts with beds, blades, buckets and other tools pull with F = 2 pi gamma R; gamma is such "
-          "that a grain of D50 is pulled with bond_number times its weight.",
+          "that a grain of D50 is pulled with bond_number times its weight: gamma = bond_number rho "
+          "g D50^2 / 6. For the size of rock at which that may be water, and what it stands for above, see "
+          "cohesion.",
       .source = "Derjaguin, Muller & Toporov, J. Colloid Interface Sci. 53 (1975) for the pull-off force.",
       .parameters = {{.key = "bond_number",
                       .unit = "",
@@ -27,6 +33,15 @@ Effect sticky_tools() {
           [](std::span<const double> v, const EffectContext& context, Modifications& model) {
             // A grain on a plane has Rbar = R = D50 / 2, twice that of a pair.
             model.tool_surface_energy += 0.5 * context.surface_energy(v[0]);
+          },
+      .in_units =
+          [](std::span<const double> v, const EffectContext& context) {
+            const double force = v[0] * context.weight();
+            return fmt::format(
+                "gamma {:.4g} J/m2, a tool pulls a grain of {:.3g} m with {:.4g} N, or {:.3g} kPa over its "
+                "section",
+                0.5 * context.surface_energy(v[0]), context.d50, force,
+                force / (std::numbers::pi / 4 * context.d50 * context.d50) / 1000);
           },
   };
 }

@@ -22,6 +22,7 @@ Effect undamped_flight() {
                       .doc = "Share of the damping that flight does without."}},
       .absent = 0,
       .experiments = {},
+      .needs = EffectNeed{&EffectScene::damped_flight, "material.damping_reach always"},
       .apply = [](std::span<const double> v, const EffectContext&,
                   Modifications& model) { model.flight_damping *= 1 - v[0]; },
   };

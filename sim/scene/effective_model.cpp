@@ -16,10 +16,11 @@ const EffectUse* Scenario::effect(const Effect& wanted) const {
 }
 
 EffectiveModel effective_model(const Scenario& scenario) {
-  EffectiveModel model{{}, read_grading(scenario.grading_file), scenario.material};
-  const EffectContext context{.d50 = scenario.effect_diameter.value_or(model.grading.diameter(0.5)),
-                              .smallest = model.grading.min_diameter(),
-                              .density = scenario.material.density};
+  EffectiveModel model{{}, read_grading(scenario.grading_file), scenario.material, {}};
+  EffectContext& context = model.context;
+  context = {.d50 = scenario.effect_diameter.value_or(model.grading.diameter(0.5)),
+             .smallest = model.grading.min_diameter(),
+             .density = scenario.material.density};
   model.changes = modifications(scenario.effects, context);
   model.material.normal_damping_ratio += model.changes.normal_damping_ratio;
   model.material.density_exponent = model.changes.density_exponent;
@@ -27,6 +28,22 @@ EffectiveModel effective_model(const Scenario& scenario) {
   if (model.changes.fines_share > 0)
     model.grading = model.grading.with_fines(model.changes.fines_share, model.changes.fines_ratio);
   return model;
+}
+
+EffectScene effect_scene(const Scenario& scenario) {
+  EffectScene scene{.experiment = experiment_type(scenario)};
+  if (const auto* dump = std::get_if<EndDump>(&scenario.experiment))
+    scene.gate_opens = dump->truck.release == Release::open_gate;
+  scene.damped_flight = scenario.material.damping_reach == DampingReach::always;
+  return scene;
+}
+
+std::vector<std::string> effects_in_words(const Scenario& scenario) {
+  std::vector<std::string> lines;
+  if (scenario.effects.empty()) return lines;
+  const EffectContext context = effective_model(scenario).context;
+  for (const EffectUse& use : scenario.effects) lines.push_back(effect_in_words(use, context));
+  return lines;
 }
 
 }  // namespace scree

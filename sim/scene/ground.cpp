@@ -8,18 +8,16 @@
 namespace scree {
 namespace {
 
-constexpr double kDepth = 5.0;         // of the solid below the floor, m
-constexpr double kBallDiameter = 1.0;  // of the base layer, thesis setups: base_ball_diameter
+constexpr double kDepth = 5.0;  // of the solid below the floor, m
 
 double radians(double degrees) {
   return degrees * std::numbers::pi / 180.0;
 }
 
-// Balls of one row of the layer, along y through (x, z) on the surface; (tx, tz) is the direction of steepest
-// descent.
+// Balls of diameter d of one row of the layer, along y through (x, z) on the surface; (tx, tz) is the
+// direction of steepest descent.
 void add_row(std::vector<NewSphere>& balls, double x, double z, double tx, double tz, double half_width,
-             bool shifted, BaseLayer layer, Random& random) {
-  const double d = kBallDiameter;
+             bool shifted, BaseLayer layer, double d, Random& random) {
   const auto add = [&](const Vec3& position, double diameter) {
     NewSphere ball;
     ball.position = position;
@@ -49,12 +47,12 @@ double toe_of(const BenchSpec& bench) {
   return bench.height / std::tan(radians(bench.slope_deg));
 }
 
-double ball_radius(BaseLayer layer) {
-  return layer == BaseLayer::none ? 0.0 : 0.5 * kBallDiameter;
+double ball_radius(BaseLayer layer, double diameter) {
+  return layer == BaseLayer::none ? 0.0 : 0.5 * diameter;
 }
 
 double standing_height(const BenchSpec& b) {
-  return b.height + (b.layer_on_top ? ball_radius(b.base_layer) : 0.0);
+  return b.height + (b.layer_on_top ? ball_radius(b.base_layer, b.ball_diameter) : 0.0);
 }
 
 TriangleMesh make_bench(const BenchSpec& b) {
@@ -88,34 +86,41 @@ std::vector<NewSphere> make_base_layer(const BenchSpec& b, std::uint64_t seed) {
   if (b.base_layer == BaseLayer::none) return balls;
   Random random(seed, 0, RandomPurpose::base_layer);
   const double angle = radians(b.slope_deg), slope = b.height / std::sin(angle), half = 0.5 * b.width;
-  const double pitch = kBallDiameter * std::sqrt(0.75);
+  const double d = b.ball_diameter, pitch = d * std::sqrt(0.75);
   // Rows at equal distances along the surface, one of them on the crest.
-  const int first = b.layer_on_top ? -static_cast<int>((b.top_length - 0.5 * kBallDiameter) / pitch) : 1;
-  const int last = static_cast<int>((slope + b.floor_length - 0.5 * kBallDiameter) / pitch);
+  const int first = b.layer_on_top ? -static_cast<int>((b.top_length - 0.5 * d) / pitch) : 1;
+  const int last = static_cast<int>((slope + b.floor_length - 0.5 * d) / pitch);
   for (int row = first; row <= last; ++row) {
     const double s = row * pitch;
     const bool shifted = row % 2 != 0;
     if (s < 0)
-      add_row(balls, s, b.height, 1, 0, half, shifted, b.base_layer, random);
+      add_row(balls, s, b.height, 1, 0, half, shifted, b.base_layer, d, random);
     else if (s < slope)
       add_row(balls, s * std::cos(angle), b.height - s * std::sin(angle), std::cos(angle), -std::sin(angle),
-              half, shifted, b.base_layer, random);
+              half, shifted, b.base_layer, d, random);
     else
-      add_row(balls, toe_of(b) + s - slope, 0, 1, 0, half, shifted, b.base_layer, random);
+      add_row(balls, toe_of(b) + s - slope, 0, 1, 0, half, shifted, b.base_layer, d, random);
   }
   return balls;
 }
 
-std::vector<NewSphere> make_floor_layer(double half_width, BaseLayer layer, std::uint64_t seed) {
+std::vector<NewSphere> make_floor_layer(double half_width, BaseLayer layer, double diameter,
+                                        std::uint64_t seed) {
   std::vector<NewSphere> balls;
   if (layer == BaseLayer::none) return balls;
   Random random(seed, 0, RandomPurpose::base_layer);
-  const double pitch = kBallDiameter * std::sqrt(0.75);
+  const double pitch = diameter * std::sqrt(0.75);
   bool shifted = false;
-  for (double x = -half_width + 0.5 * kBallDiameter; x <= half_width - 0.5 * kBallDiameter;
+  for (double x = -half_width + 0.5 * diameter; x <= half_width - 0.5 * diameter;
        x += pitch, shifted = !shifted)
-    add_row(balls, x, 0, 1, 0, half_width, shifted, layer, random);
+    add_row(balls, x, 0, 1, 0, half_width, shifted, layer, diameter, random);
   return balls;
+}
+
+double estimated_balls(double area, BaseLayer layer, double diameter) {
+  if (layer == BaseLayer::none) return 0;
+  const double places = area / (diameter * diameter * std::sqrt(0.75));
+  return layer == BaseLayer::mixed ? 2.5 * places : places;  // four balls at half of the places
 }
 
 TriangleMesh make_tube(double inner_radius, double wall, double low, double high, int sides) {

@@ -14,7 +14,7 @@ RunOutcome run_repose_lift(const Scenario& scenario, const ReposeLift& e, std::u
   const EffectiveModel model = effective_model(scenario);
   const std::vector<double> diameters =
       generate_diameters(model.grading, e.mass, density_of(model.material), seed, 1);
-  const double floor = ball_radius(e.base_layer);  // the container stands on the balls
+  const double floor = ball_radius(e.base_layer, e.ball_diameter);  // the container stands on the balls
   const Load load = fill_region({{e.diameter, 0, e.height}}, diameters, seed, 1, model.changes.clumps);
   const double lift = e.height + 2.0 * diameters.front();
   Stage stage(scenario, seed, threads, hooks, {-r, -r, -0.5 * e.height},
@@ -27,7 +27,7 @@ RunOutcome run_repose_lift(const Scenario& scenario, const ReposeLift& e, std::u
                        .diameter = diameters[k],
                        .dump = 1,
                        .axis = load.axes.empty() ? Vec3::Zero() : load.axes[k]});
-  stage.begin(make_floor_layer(r, e.base_layer, seed), {spheres});
+  stage.begin(make_floor_layer(r, e.base_layer, e.ball_diameter, seed), {spheres});
   world.add_mesh(make_box({-r, -r, -0.2 * r}, {r, r, 0}), stage.ground_surface(e.floor_mu, e.floor_mu_r),
                  Motion());
   stage.add_tools();

@@ -128,7 +128,7 @@ std::string ScenarioError::text() const {
 }
 
 ScenarioResult load_scenario(const fs::path& file, const std::vector<std::string>& overrides,
-                             const fs::path& asset_dir) {
+                             const fs::path& asset_dir, ReadFor use) {
   ScenarioResult result;
   result.scenario.name = file.stem().string();
   ReadNotes notes;
@@ -140,7 +140,7 @@ ScenarioResult load_scenario(const fs::path& file, const std::vector<std::string
   }
   if (root) {
     read_keys(*root, result.scenario, asset_dir, chain.incomplete, notes);
-    check_scenario(result.scenario, asset_dir, notes, result.warnings);
+    check_scenario(result.scenario, asset_dir, use, notes, result.warnings);
     find_bullet_settings(result.scenario, asset_dir, notes);
   }
   put_in_order(notes.errors, chain.files);

@@ -44,9 +44,10 @@ struct BenchSpec {
   double top_length = 40;    ///< m
   double floor_length = 80;  ///< m
   double width = 100;        ///< m, y from -width/2 to width/2
-  BaseLayer base_layer =
-      BaseLayer::homogeneous;  ///< fixed balls: 1 m (homogeneous), or 0.5 and 1 m (mixed, appendix F)
-  bool layer_on_top = true;    ///< they cover the bench top too, as in the thesis; without them it is plane
+  /// Fixed balls: of one size (homogeneous), or of that and half of it (mixed, appendix F).
+  BaseLayer base_layer = BaseLayer::homogeneous;
+  double ball_diameter = 1;  ///< m, of the (larger) balls; thesis setups: base_ball_diameter
+  bool layer_on_top = true;  ///< they cover the bench top too, as in the thesis; without them it is plane
 };
 
 enum class Release { open_gate, hoist };
@@ -118,7 +119,8 @@ struct ReposeLift {
   double floor_radius = 1.5;                           ///< half width of the floor, m
   std::optional<double> container_mu, container_mu_r;  ///< wall of the container; default the rock's own
   std::optional<double> floor_mu, floor_mu_r;
-  BaseLayer base_layer = BaseLayer::none;
+  BaseLayer base_layer = BaseLayer::none;  ///< on the floor, as on a bench
+  double ball_diameter = 1;                ///< of its balls, m
 };
 
 /// Buckets emptied one after another over the edge of a wall: the laboratory segregation test.
@@ -200,9 +202,15 @@ struct EffectiveModel {
   Modifications changes;
   Grading grading;
   Material material;
+  EffectContext context;  ///< what the effects refer to
 };
 /// Throws as read_grading does.
 EffectiveModel effective_model(const Scenario& scenario);
+
+/// What of the scenario decides whether an effect acts.
+EffectScene effect_scene(const Scenario& scenario);
+/// The effects with their values, a line each; throws as read_grading does.
+std::vector<std::string> effects_in_words(const Scenario& scenario);
 
 /// The bench of an experiment that has one; null otherwise.
 const BenchSpec* bench_of(const Scenario& scenario);
@@ -222,11 +230,15 @@ struct ScenarioResult {
   std::vector<std::string> warnings;
 };
 
+/// What a scenario is read for: to be run as it stands, with all the files it asks for, or for its numbers
+/// alone, as ensembles and analyses do: then nothing that only its trajectory forbids is an error.
+enum class ReadFor { run, numbers };
+
 /// Reads, resolves `extends`, applies overrides ("material.mu=0.5"), checks everything (meshes and grading
 /// are opened too). `asset_dir` is the project's assets folder: gradings are found by name there, meshes by
 /// relative path; paths in a file are first taken relative to that file.
 ScenarioResult load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides,
-                             const std::filesystem::path& asset_dir);
+                             const std::filesystem::path& asset_dir, ReadFor use = ReadFor::run);
 
 /// JSON Schema (draft 2020-12) of a scenario file, for editors.
 std::string scenario_schema();

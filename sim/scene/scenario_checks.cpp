@@ -10,6 +10,7 @@
 #include "sim/io/mesh.h"
 #include "sim/scene/blade_passes.h"
 #include "sim/scene/estimate.h"
+#include "sim/scene/ground.h"
 #include "sim/scene/scenario_read.h"
 #include "sim/scene/scenario_values.h"
 
@@ -24,14 +25,17 @@ constexpr double kDensestFill = 0.62;
 /// Width and height of a blade below which it is none, m.
 constexpr double kLeastBlade = 1e-3;
 
+/// Of the bench's height, diameter of a base ball above which the layer shapes the slope.
+constexpr double kLargeBall = 0.2;
+
 /// Time between frames of a trajectory below which it fills any disk, s.
 constexpr double kLeastFrameInterval = 1e-3;
 
 class Checks {
  public:
-  Checks(const Scenario& scenario, const fs::path& asset_dir, ReadNotes& notes,
+  Checks(const Scenario& scenario, const fs::path& asset_dir, ReadFor use, ReadNotes& notes,
          std::vector<std::string>& warnings)
-      : s_(scenario), asset_dir_(asset_dir), notes_(notes), warnings_(warnings) {}
+      : s_(scenario), asset_dir_(asset_dir), use_(use), notes_(notes), warnings_(warnings) {}
 
   void all() {
     meshes();
@@ -116,12 +120,14 @@ class Checks {
             use.values.front() != use.effect->absent && other.values.front() != other.effect->absent)
           fail(&use.values.front(), fmt::format("effects: {} and {} do not go together; take one of them",
                                                 use.effect->name, other.effect->name));
-    for (const EffectUse& use : s_.effects) {
-      const auto& acts_in = use.effect->experiments;
-      if (!acts_in.empty() && std::find(acts_in.begin(), acts_in.end(), experiment_type(s_)) == acts_in.end())
-        warnings_.push_back(fmt::format("effects.{}: changes nothing in an experiment of type {}",
-                                        use.effect->name, experiment_type(s_)));
-    }
+    const EffectScene scene = effect_scene(s_);
+    for (const EffectUse& use : s_.effects)
+      if (const std::string why = why_inert(*use.effect, scene); !why.empty())
+        warnings_.push_back(fmt::format("effects.{}: changes nothing {}", use.effect->name, why));
+    if (use_ == ReadFor::run && s_.output.trajectory && modifications(s_.effects, {}).breakage.on())
+      fail(&s_.effect(*find_effect("breakage"))->values.front(),
+           "effects.breakage: a trajectory has a row for each grain put in and none for fragments; set "
+           "output.trajectory to false");
   }
 
   // Piles that are asked for but never there.
@@ -140,10 +146,61 @@ class Checks {
 
   void end_dump(const EndDump& e) {
     if (notes_.good({&e.dumps})) piles(e.dumps);
-    if (e.truck.release == Release::hoist && notes_.good({&e.truck.tilt_deg}) && e.truck.tilt_deg <= 0)
-      fail(&e.truck.tilt_deg,
-           "experiment.truck.tilt_deg: 0 with release hoist: the bed must tilt, more than 0");
+    bed(e.truck, e.bench);
     bench_loads(e, e.truck.load_box, "experiment.truck.load_box_m", "the truck's load box");
+  }
+
+  /// A bed must be tilted, and stand over the bench top.
+  void bed(const TruckSpec& truck, const BenchSpec& bench) {
+    if (!notes_.good({&truck.tilt_deg})) return;
+    if (truck.tilt_deg <= 0)
+      return fail(&truck.tilt_deg, fmt::format("experiment.truck.tilt_deg: 0 with release {}: the bed must "
+                                               "tilt, more than 0",
+                                               truck.release == Release::hoist ? "hoist" : "open_gate"));
+    // Rock on a plane slides from tan(tilt) = mu on, and rolls from tan(tilt) = mu_r on.
+    const double least = std::min(truck.mu.value_or(s_.material.mu), truck.mu_r.value_or(s_.material.mu_r));
+    const double starts = std::atan(least) * 180 / std::numbers::pi;
+    if (notes_.good({&s_.material.mu, &s_.material.mu_r, &truck.mu, &truck.mu_r}) && truck.tilt_deg <= starts)
+      warnings_.push_back(fmt::format(
+          "experiment.truck.tilt_deg: on a bed tilted by {:g} degrees rock neither slides nor rolls; it does "
+          "above {:.3g} degrees, whose tangent is the smaller of mu and mu_r ({:g}). What does not spill "
+          "over "
+          "the lip falls on the bench top when the truck leaves",
+          truck.tilt_deg, starts, least));
+    if (!notes_.good({&truck.setback, &truck.load_box, &bench.top_length})) return;
+    const double tilt = truck.release == Release::hoist ? 0 : truck.tilt_deg * std::numbers::pi / 180;
+    const double length = truck.load_box.x() * std::cos(tilt);
+    if (truck.setback + length > bench.top_length)
+      fail(&truck.setback,
+           fmt::format("experiment.truck.setback_m: a bed {:.3g} m long in plan at {:g} m from "
+                       "the crest does not fit on a bench top {:g} m long",
+                       length, truck.setback, bench.top_length));
+  }
+
+  /// What holds for the bench of all experiments that have one.
+  void bench(const BenchSpec& b) {
+    if (b.base_layer == BaseLayer::none ||
+        !notes_.good({&b.ball_diameter, &b.height, &b.slope_deg, &b.width, &b.floor_length, &b.top_length}))
+      return;
+    const double slope = b.height / std::sin(b.slope_deg * std::numbers::pi / 180);
+    balls((slope + b.floor_length + (b.layer_on_top ? b.top_length : 0)) * b.width, b.base_layer,
+          b.ball_diameter, "experiment.bench.base_ball_diameter_m");
+    if (b.ball_diameter > kLargeBall * b.height)
+      warnings_.push_back(fmt::format(
+          "experiment.bench.base_ball_diameter_m: balls of {:g} m on a bench {:g} m high, more than a fifth "
+          "of "
+          "it ({:.3g} m): they shape the slope{}",
+          b.ball_diameter, b.height, kLargeBall * b.height,
+          b.layer_on_top ? ", and rock upon those of the top lies above the crest's height, in no section"
+                         : ""));
+  }
+
+  /// A base layer on a surface of this area (m2) has no more balls than a run can have spheres.
+  void balls(double area, BaseLayer layer, const double& diameter, std::string_view path) {
+    if (const double count = estimated_balls(area, layer, diameter); count > kMaxSpheres)
+      fail(&diameter, fmt::format("{}: about {:.1f} million balls of {:g} m, more than the {:.0f} million "
+                                  "allowed; enlarge them",
+                                  path, count / 1e6, diameter, kMaxSpheres / 1e6));
   }
 
   void push_dump(const PushDump& e) {
@@ -256,6 +313,7 @@ class Checks {
   /// What holds for all experiments that bring loads over a crest; `what` holds a load.
   template <class Experiment>
   void bench_loads(const Experiment& e, const Vec3& box, const std::string& path, std::string_view what) {
+    bench(e.bench);
     smallest(e.payload, &e.payload, "experiment.payload_t");
     if (notes_.good({&e.payload, &e.dumps}))
       spheres(e.payload * e.dumps, &e.payload, "experiment.payload_t",
@@ -286,6 +344,9 @@ class Checks {
   }
 
   void repose_lift(const ReposeLift& r) {
+    if (notes_.good({&r.ball_diameter, &r.floor_radius}))
+      balls(4 * r.floor_radius * r.floor_radius, r.base_layer, r.ball_diameter,
+            "experiment.floor.base_ball_diameter_m");
     if (!notes_.good({&r.mass})) return;
     smallest(r.mass, &r.mass, "experiment.mass_kg");
     spheres(r.mass, &r.mass, "experiment.mass_kg", fmt::format("{} kg", r.mass), "lower mass_kg");
@@ -386,6 +447,7 @@ class Checks {
 
   const Scenario& s_;
   const fs::path& asset_dir_;
+  const ReadFor use_;
   ReadNotes& notes_;
   std::vector<std::string>& warnings_;
   std::optional<Grading> grading_;
@@ -393,9 +455,9 @@ class Checks {
 
 }  // namespace
 
-void check_scenario(const Scenario& scenario, const fs::path& asset_dir, ReadNotes& notes,
+void check_scenario(const Scenario& scenario, const fs::path& asset_dir, ReadFor use, ReadNotes& notes,
                     std::vector<std::string>& warnings) {
-  Checks(scenario, asset_dir, notes, warnings).all();
+  Checks(scenario, asset_dir, use, notes, warnings).all();
 }
 
 void find_bullet_settings(Scenario& s, const fs::path& asset_dir, ReadNotes& notes) {

@@ -6,6 +6,7 @@ namespace {
 constexpr Range kFriction{0, 5};
 constexpr std::string_view kRock = "rock", kEquivalent = "equivalent";
 constexpr Range kScale{1e-6, 1e6};
+constexpr Range kBall{0.01, 20};
 constexpr Range kAnywhere{-1e4, 1e4};
 constexpr std::string_view kMetre = "m", kSecond = "s", kDegree = "degrees", kNone = "";
 
@@ -55,7 +56,11 @@ Fields keys(BenchSpec& b) {
        "Length of the floor in front of the toe."},
       {"width_m", Number{&b.width, kMetre, {0.1, 1000}}, "Width of bench and floor along the crest."},
       {"base_layer", base_layer(b.base_layer),
-       "Fixed balls on top, slope and floor: none, homogeneous (1 m), or mixed (0.5 m and 1 m)."},
+       "Fixed balls on top, slope and floor: none, homogeneous (of one size), or mixed (of that and half of "
+       "it)."},
+      {"base_ball_diameter_m", Number{&b.ball_diameter, kMetre, kBall},
+       "Diameter of the balls of the base layer, of the larger ones of a mixed layer. They should be small "
+       "beside the bench: they carry the load, half of their diameter above its surface."},
       {"layer_on_top", Boolean{&b.layer_on_top},
        "Whether the base layer covers the bench top too, as in the thesis. Between its balls lies room for "
        "much fine rock; a top that trucks and dozers have levelled is plane: false."},
@@ -154,6 +159,8 @@ Fields floor_keys(ReposeLift& r) {
       {"mu", NumberOr{&r.floor_mu, kFriction, kRock}, kMuDoc},
       {"mu_r", NumberOr{&r.floor_mu_r, kFriction, kRock}, kMuRDoc},
       {"base_layer", base_layer(r.base_layer), "Fixed balls on the floor: none, homogeneous, or mixed."},
+      {"base_ball_diameter_m", Number{&r.ball_diameter, kMetre, kBall},
+       "Diameter of the balls of the base layer, of the larger ones of a mixed layer."},
   };
 }
 

@@ -36,8 +36,8 @@ void read_keys(const YamlNode& root, Scenario& scenario, const std::filesystem::
                bool incomplete, ReadNotes& notes);
 
 /// Checks that span keys or need other files: meshes, grading, reference cases, sizes (scenario_checks.cpp).
-void check_scenario(const Scenario& scenario, const std::filesystem::path& asset_dir, ReadNotes& notes,
-                    std::vector<std::string>& warnings);
+void check_scenario(const Scenario& scenario, const std::filesystem::path& asset_dir, ReadFor use,
+                    ReadNotes& notes, std::vector<std::string>& warnings);
 
 /// Sets `bullet` of a scenario with engine impulse: the settings given, else the equivalent ones.
 void find_bullet_settings(Scenario& scenario, const std::filesystem::path& asset_dir, ReadNotes& notes);

@@ -11,6 +11,7 @@
 
 #include "analysis/report/lateral_table.h"
 #include "analysis/report/report_text.h"
+#include "analysis/results/summary.h"
 #include "tests/analysis/fake_run.h"
 
 namespace scree {
@@ -128,6 +129,53 @@ TEST(Report, ShowsAReposeTest) {
   EXPECT_THAT(page, HasSubstr("ring 3"));
   EXPECT_GT(std::filesystem::file_size(folder / "pictures" / "heap_cut.png"), 4000U);
   EXPECT_GT(std::filesystem::file_size(folder / "pictures" / "repose.svg"), 4000U);
+}
+
+TEST(ReportText, LeadSaysWhyThereIsNoReposeAngle) {
+  RunResult run;
+  run.seeds.resize(2);
+  for (SeedResult& seed : run.seeds) {
+    seed.repose = ReposeAngle{};
+    seed.repose->angle = std::nan("");
+    seed.at_rest = true;
+  }
+  EXPECT_THAT(lead_paragraphs(run), HasSubstr("No repose angle: no flank: the mean surface"));
+  for (SeedResult& seed : run.seeds) seed.at_rest = false;
+  EXPECT_THAT(lead_paragraphs(run), HasSubstr("No repose angle: not at rest."));
+  run.seeds[1].repose->angle = 31.25;
+  EXPECT_THAT(lead_paragraphs(run), HasSubstr("The heap is not at rest yet; its flank stands at 31.2°"));
+  EXPECT_EQ(why_no_repose_angle(run.seeds[1]), "");
+}
+
+TEST(ReportText, LeadSaysWhenSectionsDoNotStandForThePile) {
+  RunResult run = fake_run();
+  double mass = 0;
+  for (const Section& section : run.seeds[0].sections[0].sections) mass += section.mass;
+  for (SeedResult& seed : run.seeds) seed.sections[0].mass_outside = 0.05 * mass;
+  EXPECT_THAT(lead_paragraphs(run), Not(HasSubstr("belongs to no section")));
+  for (SeedResult& seed : run.seeds) seed.sections[0].mass_outside = 3 * mass;
+  EXPECT_NEAR(share_in_no_section(run), 0.75, 0.01);
+  EXPECT_THAT(lead_paragraphs(run),
+              HasSubstr("75 % of the rock lies above the crest's height and belongs to no section."));
+  run.bench_height = 0;
+  EXPECT_EQ(share_in_no_section(run), 0);
+}
+
+TEST(ReportText, EnergyIsClosedOrOpen) {
+  EXPECT_EQ(energy_in_words(-0.0012, true), "closed to 0.12 %");
+  EXPECT_EQ(energy_in_words(-393.0035, false), "open by 39300.35 %");
+  EXPECT_EQ(energy_in_words(std::nan(""), false), "not a number");
+}
+
+TEST(Report, ListsEffectsAndSaysOfAnOpenBalanceThatItIs) {
+  RunResult run = fake_run();
+  run.effects = {"cohesion: bond_number 1; gamma 1766 J/m2"};
+  for (SeedResult& seed : run.seeds) seed.energy = EnergyTerms{{}, 100, 5, 0.05, false};
+  const auto folder = fresh_folder("effects");
+  write_report(run, folder, {45.0});
+  const std::string page = text_of(folder / "report.html");
+  EXPECT_THAT(page, HasSubstr("<dt>effect</dt><dd>cohesion: bond_number 1; gamma 1766 J/m2</dd>"));
+  EXPECT_THAT(page, HasSubstr("<dt>energy balance</dt><dd>open by 5.00 % of what was put in"));
 }
 
 TEST(Report, NamesThePackageWhenGnuplotIsMissing) {

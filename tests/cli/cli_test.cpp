@@ -141,17 +141,52 @@ TEST_F(Cli, BadInputIsOneLineAndExitCodeTwo) {
     EXPECT_EQ(other.code, 2) << key;
     EXPECT_EQ(std::count(other.text.begin(), other.text.end(), '\n'), 1) << other.text;
   }
-  const Called breaks =
-      call("run " + small + " --set effects.breakage.fragility_kg_per_j=1 --out " + (folder / "x").string());
-  EXPECT_EQ(breaks.code, 2);
-  EXPECT_NE(breaks.text.find("add --set output.trajectory=false"), std::string::npos) << breaks.text;
-  EXPECT_EQ(std::count(breaks.text.begin(), breaks.text.end(), '\n'), 1) << breaks.text;
+  for (const std::string& command :
+       {std::string("validate "), "run --out " + (folder / "x").string() + " "}) {
+    const Called breaks = call(command + small +
+                               " --set experiment.bench.base_ball_diameter_m=0.5"
+                               " --set effects.breakage.fragility_kg_per_j=1");
+    EXPECT_EQ(breaks.code, 2);
+    EXPECT_NE(breaks.text.find("set output.trajectory to false"), std::string::npos) << breaks.text;
+    EXPECT_EQ(std::count(breaks.text.begin(), breaks.text.end(), '\n'), 1) << breaks.text;
+  }
   const Called set =
       call("run " + small + " --set material.mux=1 --set material.mu=-1 --out " + (folder / "x").string());
   EXPECT_EQ(set.code, 2);
   EXPECT_NE(set.text.find("--set material.mux=1"), std::string::npos) << set.text;
   EXPECT_NE(set.text.find("--set material.mu=-1"), std::string::npos) << set.text;
   EXPECT_FALSE(fs::exists(folder / "x")) << "nothing is written before the input is good";
+}
+
+// Without damping half of the load still rolls when its time is over.
+TEST_F(Cli, AHeapWithoutAnAngleSaysWhy) {
+  const fs::path out = folder / "run";
+  const Called run = call("run " + std::string(SCREE_SOURCE_DIR) +
+                          "/scenarios/small_heap.yaml --set material.local_damping=0 --out " + out.string());
+  EXPECT_EQ(run.code, 0) << run.text;
+  EXPECT_EQ(run.text.find("nan"), std::string::npos) << run.text;
+  EXPECT_NE(run.text.find("no repose angle (reason below)"), std::string::npos) << run.text;
+  EXPECT_NE(run.text.find("note: seed 10001: no repose angle: not at rest"), std::string::npos) << run.text;
+  EXPECT_NE(slurp(out / "report.html").find("No repose angle: not at rest."), std::string::npos);
+}
+
+// Balls of 1 m on a bench of 0.5 m carry nearly all of the load above its crest.
+TEST_F(Cli, BallsTooLargeForTheBenchAreTold) {
+  const fs::path out = folder / "run";
+  const Called run = call("run " + small + " --set experiment.bench.height_m=0.5 --out " + out.string() +
+                          " --set effects.cohesion.bond_number=0.01");
+  EXPECT_EQ(run.code, 0) << run.text;
+  for (const char* text : {"balls of 1 m on a bench 0.5 m high, more than a fifth of it (0.1 m)",
+                           "of the rock lies above the crest's height and belongs to no section",
+                           "effect cohesion: bond_number 0.01; gamma "})
+    EXPECT_NE(run.text.find(text), std::string::npos) << text << '\n' << run.text;
+  const std::string report = slurp(out / "report.html");
+  EXPECT_NE(report.find("belongs to no section.</strong>"), std::string::npos);
+  EXPECT_NE(report.find("<dt>effect</dt><dd>cohesion: bond_number 0.01; gamma "), std::string::npos);
+  const Called fine = call("validate " + small + " --set experiment.bench.base_ball_diameter_m=0.6" +
+                           " --set effects.cohesion.bond_number=0.01");
+  EXPECT_EQ(fine.text.find("warning"), std::string::npos) << "a fifth of 3 m\n" << fine.text;
+  EXPECT_NE(fine.text.find("effect cohesion: bond_number 0.01; gamma "), std::string::npos) << fine.text;
 }
 
 // Effects on measurement change the gradings of the same pile, and nothing when absent.

@@ -117,7 +117,7 @@ class Session : public testing::Test {
   ModelSpace model_space() const {
     std::vector<Dataset::Experiment> experiments;
     for (const ModelExperiment& each : model.experiments) experiments.push_back(each.experiment);
-    return space_of(model, experiments, {});
+    return space_of(model, experiments, {}, kAssets);
   }
   // A twin's data as diagnose reads them from its files.
   JoinedData data_of(const TwinSpec& spec, TwinTruth* truth = nullptr) {
@@ -309,8 +309,8 @@ TEST_F(Session, TwinsHaveTheStrengthAskedForAndUseNoSeedOfTheDesign) {
   EXPECT_NEAR(truth.detectability[0], 4, 0.5);
   // By the formulas: each number scatters by 0.3, an error of half of that is added, five repeats, and what
   // goes along with friction does not count. The twin knows the scatter of 30 simulations.
-  const double t = YAML::Load(twin_answer(model, {{"twisting"}, 4, 5, 0.5, 9, ""},
-                                          truth))["effects"][0]["values"]["effects.twisting.mu_t"]
+  const double t = YAML::Load(twin_answer(model, {{"twisting"}, 4, 5, 0.5, 9, ""}, truth,
+                                          kAssets))["effects"][0]["values"]["effects.twisting.mu_t"]
                        .as<double>();
   Eigen::VectorXd change(6), friction(6);
   change << 3 * t, 9 * t * t, -7 * t, t, 3 * t, -2 * t;
@@ -319,7 +319,7 @@ TEST_F(Session, TwinsHaveTheStrengthAskedForAndUseNoSeedOfTheDesign) {
   EXPECT_NEAR(change.norm() / std::sqrt(6) / (0.3 * std::sqrt(1.25 / 5)), 4, 0.8);
   EXPECT_LE(truth.at.base.cwiseAbs().maxCoeff(), 0.6);
   EXPECT_THROW(data_of({{"twisting"}, 4000, 5, 0.5, 9, ""}), TooWeak);
-  const std::string answer = twin_answer(model, {{"twisting"}, 4, 5, 0.5, 9, ""}, truth);
+  const std::string answer = twin_answer(model, {{"twisting"}, 4, 5, 0.5, 9, ""}, truth, kAssets);
   EXPECT_THAT(answer, HasSubstr("effects.twisting.mu_t"));
   std::ifstream yaml(folder / "dataset.yaml"), table(folder / "observables.csv");
   const std::string public_text{std::istreambuf_iterator<char>(yaml), {}},
@@ -377,6 +377,35 @@ TEST_F(Session, TwinsKeepToAmplitudesThatCanBeSimulated) {
   EXPECT_THROW(bond_number(), TooWeak);
   most = 0;
   EXPECT_THROW(bond_number(), std::runtime_error);
+}
+
+// An effect costs no simulations of an experiment in which it changes nothing, be it by the scenario or by
+// what the model sets.
+TEST_F(Session, EffectsThatChangeNothingAreNotSearched) {
+  const std::string scenarios = (fs::path(SCREE_SOURCE_DIR) / "scenarios").string();
+  const std::string head =
+      "parameters: {material.mu: {nominal: 0.3, from: 0.2, to: 0.4}}\n"
+      "effects: [release_speed, undamped_flight, cohesion]\n";
+  const auto acts = [&](const std::string& text, const std::string& effect) {
+    write_text_file(folder / "inert.yaml", head + text);
+    const auto loaded = load_model(folder / "inert.yaml", kAssets);
+    EXPECT_TRUE(loaded.errors.empty()) << loaded.errors.front().text();
+    std::vector<Dataset::Experiment> experiments;
+    for (const ModelExperiment& each : loaded.model.experiments) experiments.push_back(each.experiment);
+    for (const CandidateEffect& candidate : space_of(loaded.model, experiments, {}, kAssets).effects)
+      if (candidate.name == effect) return candidate.acts;
+    return std::vector<std::string>{};
+  };
+  const std::string hoist = "  hoist: {scenario: " + scenarios + "/hoist_dump.yaml, observables: [chi_S1]}\n",
+                    gate = "  gate: {scenario: " + scenarios + "/quick_dump.yaml, observables: [chi_S1]}\n";
+  EXPECT_THAT(acts("experiments:\n" + hoist, "release_speed"), testing::IsEmpty());
+  EXPECT_THAT(acts("experiments:\n" + hoist, "cohesion"), testing::ElementsAre("hoist"));
+  EXPECT_THAT(acts("experiments:\n" + hoist + gate, "release_speed"), testing::ElementsAre("gate"));
+  EXPECT_THAT(acts("set: {experiment.truck.release: hoist}\nexperiments:\n" + gate, "release_speed"),
+              testing::IsEmpty());
+  EXPECT_THAT(acts("set: {material.damping_reach: contacts}\nexperiments:\n" + gate, "undamped_flight"),
+              testing::IsEmpty());
+  EXPECT_THAT(acts("experiments:\n" + gate, "undamped_flight"), testing::ElementsAre("gate"));
 }
 
 TEST_F(Session, ModelFilesAreChecked) {

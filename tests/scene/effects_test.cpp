@@ -137,9 +137,11 @@ TEST(ScenarioEffects, FaultsAreSaidAtTheirPlace) {
   EXPECT_THAT(
       folder.messages(std::string(kDump) + "effects: {section_borders: {shift: 1}}\n"),
       ElementsAre(HasSubstr("effects.section_borders.shift: 1 is out of range; allowed -0.9 to 0.9")));
-  EXPECT_THAT(folder.messages(std::string(kDump) + "effects: {breakage: {}, clumps: {}}\n"),
+  EXPECT_THAT(folder.messages(std::string(kDump) +
+                              "output: {trajectory: false}\neffects: {breakage: {}, clumps: {}}\n"),
               ElementsAre(HasSubstr("effects: clumps and breakage do not go together; take one of them")));
-  EXPECT_THAT(folder.messages(std::string(kDump) + "effects: {breakage: {fragility: 1}}\n"),
+  EXPECT_THAT(folder.messages(std::string(kDump) +
+                              "output: {trajectory: false}\neffects: {breakage: {fragility: 1}}\n"),
               ElementsAre(HasSubstr("unknown key 'fragility' in effects.breakage")));
   EXPECT_THAT(
       folder.messages(std::string(kDump) + "effects: {vibration: {frequency_hz: 0}}\n"),
@@ -157,7 +159,64 @@ TEST(ScenarioEffects, ThatChangeNothingAreAWarning) {
       folder.load("grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.3}\nexperiment: {type: drop_test}\n",
                   {"effects.release_speed.speed_m_per_s=1"});
   EXPECT_THAT(result.errors, IsEmpty());
-  EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("effects.release_speed: changes nothing")));
+  EXPECT_THAT(result.warnings,
+              ElementsAre("effects.release_speed: changes nothing in an experiment of type drop_test"));
+}
+
+TEST(ScenarioEffects, ThatChangeNothingInThisScenarioAreAWarning) {
+  const ScenarioFolder folder;
+  const auto warnings = [&](const std::string& effect, const std::string& key) {
+    const auto result = folder.load(kDump, {effect, key});
+    EXPECT_THAT(result.errors, IsEmpty());
+    return result.warnings;
+  };
+  // A bed that is hoisted has no gate that opens.
+  const std::string speed = "effects.release_speed.speed_m_per_s=1";
+  EXPECT_THAT(warnings(speed, "experiment.truck.release=open_gate"), IsEmpty());
+  EXPECT_THAT(
+      warnings(speed, "experiment.truck.release=hoist"),
+      ElementsAre("effects.release_speed: changes nothing without experiment.truck.release open_gate"));
+  // Damping of contacts alone does not act in flight.
+  const std::string undamped = "effects.undamped_flight.share=1";
+  EXPECT_THAT(warnings(undamped, "material.damping_reach=always"), IsEmpty());
+  EXPECT_THAT(warnings(undamped, "material.damping_reach=contacts"),
+              ElementsAre("effects.undamped_flight: changes nothing without material.damping_reach always"));
+}
+
+TEST(ScenarioEffects, FragmentsHaveNoRowsInATrajectory) {
+  const ScenarioFolder folder;
+  const std::string breaks = std::string(kDump) + "effects: {breakage: {}}\n";
+  EXPECT_THAT(folder.messages(breaks),
+              ElementsAre(HasSubstr("effects.breakage: a trajectory has a row for each grain put in")));
+  EXPECT_THAT(folder.messages(breaks, {"output.trajectory=false"}), IsEmpty());
+  EXPECT_THAT(folder.messages(breaks, {"effects.breakage.fragility_kg_per_j=0"}), IsEmpty());
+  // Ensembles write no trajectory, whatever the file says.
+  EXPECT_THAT(
+      load_scenario(folder.write("numbers.yaml", breaks), {}, folder.dir / "assets", ReadFor::numbers).errors,
+      IsEmpty());
+}
+
+// Two grains of 0.3 m of density 2700 weigh 374.46 N each; gamma = weight / (2 pi 0.3 m / 4), and the section
+// is pi/4 (0.3 m)^2 = 0.070686 m2. A plane has twice the effective radius of a pair.
+TEST(ScenarioEffects, CohesionIsToldInUnits) {
+  const ScenarioFolder folder;
+  const auto words = [&](const std::string& effect) {
+    return effects_in_words(
+        folder
+            .load(kDump, {"material.density_kg_m3=2700", "effects.reference.diameter_m=0.3",
+                          "effects." + effect + ".bond_number=0.5"})
+            .scenario);
+  };
+  EXPECT_THAT(words("cohesion"),
+              ElementsAre("cohesion: bond_number 0.5; gamma 397.3 J/m2, two grains of 0.3 m pull each other "
+                          "with 187.2 N, or 2.65 kPa over their section"));
+  EXPECT_THAT(words("sticky_tools"),
+              ElementsAre("sticky_tools: bond_number 0.5; gamma 198.7 J/m2, a tool pulls a grain of 0.3 m "
+                          "with 187.2 N, or 2.65 kPa over its section"));
+  EXPECT_THAT(effects_in_words(folder.load(kDump, {"effects.weakening.share=0.25"}).scenario),
+              ElementsAre("weakening: share 0.25, speed_m_per_s 0.3"));
+  EXPECT_THAT(effects_in_words(folder.load(kDump, {"effects.cohesion.bond_number=0"}).scenario),
+              ElementsAre("cohesion: bond_number 0"));
 }
 
 // With fines the grading begins at its smallest diameter over the ratio, and their share passes it.
@@ -175,7 +234,7 @@ TEST(MissingFines, GradingGoesOnBelow) {
 // Small heaps of lab rock: a second of computing each.
 Scenario heap(const std::vector<std::string>& overrides) {
   const std::filesystem::path source = SCREE_SOURCE_DIR;
-  std::vector<std::string> all{"experiment.mass_kg=8", "stop.max_time_s=2", "output.frame_interval_s=0"};
+  std::vector<std::string> all{"experiment.mass_kg=8", "stop.max_time_s=2", "output.trajectory=false"};
   all.insert(all.end(), overrides.begin(), overrides.end());
   auto result = load_scenario(source / "scenarios/repose_lab_coarse.yaml", all, source / "assets");
   for (const auto& error : result.errors) ADD_FAILURE() << error.text();
@@ -195,10 +254,11 @@ bool same(const std::vector<Grain>& a, const std::vector<Grain>& b) {
 // Fragments take numbers that no later load gets, and no grain is lost or made.
 TEST(Breakage, LoadsThatComeLaterKeepTheirNumbers) {
   const std::filesystem::path source = SCREE_SOURCE_DIR;
-  auto loaded = load_scenario(source / "scenarios/thesis/lab_segregation.yaml",
-                              {"grading=Lab0_16mm", "experiment.buckets=2", "experiment.mass_kg=4",
-                               "stop.max_time_s=1", "compare=[]", "effects.breakage.fragility_kg_per_j=1"},
-                              source / "assets");
+  auto loaded =
+      load_scenario(source / "scenarios/thesis/lab_segregation.yaml",
+                    {"grading=Lab0_16mm", "experiment.buckets=2", "experiment.mass_kg=4", "stop.max_time_s=1",
+                     "compare=[]", "effects.breakage.fragility_kg_per_j=1", "output.trajectory=false"},
+                    source / "assets");
   for (const auto& error : loaded.errors) ADD_FAILURE() << error.text();
   const RunOutcome outcome = run_scenario(loaded.scenario, 10001, 1, {});
   EXPECT_GT(outcome.statistics.broken_spheres, 0);

@@ -93,6 +93,30 @@ TEST(Bench, MixedLayerHasBothSizesAndDependsOnTheSeed) {
   EXPECT_TRUE(make_base_layer(bench, 1).empty());
 }
 
+// A bench and its balls at a quarter of the size: the same layer at a quarter of the size (powers of two, so
+// to the last bit but for the slope).
+TEST(Bench, BaseLayerScalesWithItsBalls) {
+  for (const BaseLayer layer : {BaseLayer::homogeneous, BaseLayer::mixed}) {
+    BenchSpec bench;
+    bench.base_layer = layer, bench.width = 20, bench.top_length = 8, bench.floor_length = 8;
+    const auto whole = make_base_layer(bench, 1);
+    for (double* length :
+         {&bench.height, &bench.width, &bench.top_length, &bench.floor_length, &bench.ball_diameter})
+      *length *= 0.25;
+    const auto quarter = make_base_layer(bench, 1);
+    ASSERT_EQ(quarter.size(), whole.size());
+    for (std::size_t k = 0; k < whole.size(); ++k) {
+      EXPECT_EQ(quarter[k].diameter, 0.25 * whole[k].diameter);
+      EXPECT_LT((quarter[k].position - 0.25 * whole[k].position).norm(), 1e-12);
+    }
+    EXPECT_EQ(standing_height(bench), 2.5 + 0.125);
+    EXPECT_NEAR(estimated_balls((2 + 2.5 * std::sqrt(2.0) + 2) * 5, layer, 0.25),
+                static_cast<double>(quarter.size()), 0.12 * static_cast<double>(quarter.size()));
+  }
+  for (const NewSphere& ball : make_floor_layer(1, BaseLayer::homogeneous, 0.1, 1))
+    EXPECT_EQ(ball.diameter, 0.1);
+}
+
 TEST(Load, FillsBoxAndCylinderWithoutOverlap) {
   std::vector<double> diameters{2.0, 1.5, 1.5, 1.0};
   for (int k = 0; k < 400; ++k) diameters.push_back(0.6 - 0.001 * k);

@@ -23,11 +23,11 @@ const BadCase kBadCases[] = {
     {"UnknownKeyFar", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump}\nzzzzzz: x\n",
      {"4:1: unknown key 'zzzzzz'; allowed: extends, title, engine, seeds, material, grading, experiment, tools, effects, stop, numerics, output, compare"}},
     {"UnitInKeyWrong", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump, bench: {height_cm: 1000}}\n",
-     {"3:38: unknown key 'height_cm' in experiment.bench (did you mean 'height_m'?); allowed: height_m, slope_deg, top_length_m, floor_length_m, width_m, base_layer, layer_on_top"}},
+     {"3:38: unknown key 'height_cm' in experiment.bench (did you mean 'height_m'?); allowed: height_m, slope_deg, top_length_m, floor_length_m, width_m, base_layer, base_ball_diameter_m, layer_on_top"}},
     {"UnitInKeyMissing", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump, bench: {height: 10}}\n",
-     {"3:38: unknown key 'height' in experiment.bench (did you mean 'height_m'?); allowed: height_m, slope_deg, top_length_m, floor_length_m, width_m, base_layer, layer_on_top"}},
+     {"3:38: unknown key 'height' in experiment.bench (did you mean 'height_m'?); allowed: height_m, slope_deg, top_length_m, floor_length_m, width_m, base_layer, base_ball_diameter_m, layer_on_top"}},
     {"UnitInKeyImperial", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump, bench: {width_ft: 300}}\n",
-     {"3:38: unknown key 'width_ft' in experiment.bench (did you mean 'width_m'?); allowed: height_m, slope_deg, top_length_m, floor_length_m, width_m, base_layer, layer_on_top"}},
+     {"3:38: unknown key 'width_ft' in experiment.bench (did you mean 'width_m'?); allowed: height_m, slope_deg, top_length_m, floor_length_m, width_m, base_layer, base_ball_diameter_m, layer_on_top"}},
     {"UnitOfSpeed", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump}\nstop: {speed_km_h: 1}\n",
      {"4:8: unknown key 'speed_km_h' in stop (did you mean 'speed_m_per_s'?); allowed: speed_m_per_s, moving_mass_share, min_time_s, max_time_s"}},
     {"UnitOfPayload", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump, payload_kg: 300000}\n",
@@ -98,6 +98,18 @@ const BadCase kBadCases[] = {
      {"4:9: engine: a word is expected, found a list; allowed: rrlinear, impulse"}},
     {"ReleaseUnknown", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump, truck: {release: shut}}\n",
      {"3:47: experiment.truck.release: 'shut' is not known; allowed: open_gate, hoist"}},
+    {"LevelBed", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump, truck: {tilt_deg: 0}}\n",
+     {"3:48: experiment.truck.tilt_deg: 0 with release open_gate: the bed must tilt, more than 0"}},
+    {"LevelBedHoisted", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump, truck: {tilt_deg: 0, release: hoist}}\n",
+     {"3:48: experiment.truck.tilt_deg: 0 with release hoist: the bed must tilt, more than 0"}},
+    {"TruckBehindTheBench", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump, truck: {setback_m: 36.5, tilt_deg: 60}}\n",
+     {"3:49: experiment.truck.setback_m: a bed 4 m long in plan at 36.5 m from the crest does not fit on a bench top 40 m long"}},
+    {"TruckBehindTheBenchHoisted", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump, truck: {setback_m: 35, tilt_deg: 60, release: hoist}}\n",
+     {"3:49: experiment.truck.setback_m: a bed 8 m long in plan at 35 m from the crest does not fit on a bench top 40 m long"}},
+    {"MillionsOfBalls", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump, bench: {base_ball_diameter_m: 0.05}}\n",
+     {"3:60: experiment.bench.base_ball_diameter_m: about 6.2 million balls of 0.05 m, more than the 2 million allowed; enlarge them"}},
+    {"MillionsOfBallsOnTheFloor", "grading: lab\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: repose_lift, mass_kg: 1, floor: {radius_m: 10, base_layer: homogeneous, base_ball_diameter_m: 0.01}}\n",
+     {"3:114: experiment.floor.base_ball_diameter_m: about 4.6 million balls of 0.01 m, more than the 2 million allowed; enlarge them"}},
     {"BaseLayerUnknown", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump, bench: {base_layer: blocks}}\n",
      {"3:50: experiment.bench.base_layer: 'blocks' is not known; allowed: none, homogeneous, mixed"}},
     {"SeedTwice", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump}\nseeds: [1, 2, 1]\n",
@@ -312,6 +324,40 @@ TEST(BladeMesh, MustHaveAFrontAndAVolume) {
       ScenarioFolder::facet("0 0 0", "0 4 2", "0 4 0") + ScenarioFolder::facet("0 0 0", "0 0 2", "0 4 2");
   EXPECT_NE(blade("twice", sheet + back).find("experiment.blade.mesh: closed but without volume"),
             std::string::npos);
+}
+
+// What runs, but hardly as meant.
+TEST(ScenarioWarnings, SayWhatIsOddWithItsNumbers) {
+  const ScenarioFolder folder;
+  const auto warnings = [&](const std::vector<std::string>& overrides) {
+    const auto result = folder.load(
+        "grading: CM0\nmaterial: {mu: 0.5, mu_r: 0.4}\nexperiment: {type: end_dump}\n", overrides);
+    EXPECT_TRUE(result.errors.empty()) << result.errors.front().text();
+    return result.warnings;
+  };
+  EXPECT_TRUE(warnings({}).empty());
+  EXPECT_TRUE(warnings({"experiment.truck.setback_m=34"}).empty());
+  // Rolls from atan(0.4) = 21.8 degrees on, before it slides.
+  EXPECT_TRUE(warnings({"experiment.truck.tilt_deg=22"}).empty());
+  const auto level = warnings({"experiment.truck.tilt_deg=21"});
+  ASSERT_EQ(level.size(), 1);
+  EXPECT_EQ(level[0].find("experiment.truck.tilt_deg: on a bed tilted by 21 degrees rock neither slides nor "
+                          "rolls; it does above 21.8 degrees"),
+            0)
+      << level[0];
+  EXPECT_TRUE(warnings({"experiment.truck.tilt_deg=21", "experiment.truck.mu=0.3"}).empty())
+      << "of the bed, not of the rock";
+  // A fifth of 5 m is 1 m.
+  EXPECT_TRUE(warnings({"experiment.bench.height_m=5"}).empty());
+  const auto low = warnings({"experiment.bench.height_m=4"});
+  ASSERT_EQ(low.size(), 1);
+  EXPECT_EQ(
+      low[0].find("experiment.bench.base_ball_diameter_m: balls of 1 m on a bench 4 m high, more than a "
+                  "fifth of it (0.8 m)"),
+      0)
+      << low[0];
+  EXPECT_TRUE(warnings({"experiment.bench.height_m=4", "experiment.bench.base_ball_diameter_m=0.8"}).empty());
+  EXPECT_TRUE(warnings({"experiment.bench.height_m=4", "experiment.bench.base_layer=none"}).empty());
 }
 
 INSTANTIATE_TEST_SUITE_P(Table, BadScenario, testing::ValuesIn(kBadCases),

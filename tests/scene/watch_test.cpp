@@ -61,5 +61,22 @@ TEST(Watch, LostRockIsAFailureAboveItsShare) {
   EXPECT_THAT(watch_failures(outcome), ElementsAre(HasSubstr("1.09 % of the mass left")));
 }
 
+// Rock that leaves takes energy along: what is missing then says nothing of the time step, what came out of
+// nothing does.
+TEST(Watch, LostRockExplainsMissingEnergyAlone) {
+  RunOutcome outcome;
+  outcome.final_state.grains.emplace_back();
+  outcome.final_state.grains.back().mass = 1000;
+  outcome.energy.emplace();
+  outcome.energy->account.came_potential = 100;  // J put in, and none of it there: 100 % are missing
+  outcome.statistics.lost_mass = 9;
+  EXPECT_THAT(watch_failures(outcome), ElementsAre(HasSubstr("open by -100.00 %")));
+  outcome.statistics.lost_mass = 500;
+  EXPECT_THAT(watch_failures(outcome), ElementsAre(HasSubstr("of the mass left the model")));
+  outcome.energy->held.kinetic = 150;
+  EXPECT_THAT(watch_failures(outcome),
+              ElementsAre(HasSubstr("open by +50.00 %"), HasSubstr("of the mass left the model")));
+}
+
 }  // namespace
 }  // namespace scree
