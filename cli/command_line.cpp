@@ -213,7 +213,8 @@ Command analyse_command(CLI::App& all) {
       all.add_subcommand("analyse", "Read piles of any program: observables, and a dataset of them");
   app->add_option(
          "files", analyse.files,
-         "Snapshots, one a repeat: CSV (x, y, z, diameter or radius), LAMMPS dump, legacy VTK, particles.h5")
+         "Snapshots, one a repeat: CSV (x, y, z, diameter or radius), LAMMPS dump, extended XYZ, VTK (legacy "
+         "or XML), particles.h5")
       ->required();
   app->add_option("--scenario", analyse.scenario,
                   "Scenario that simulates them: bench, sections, grading as dumped");

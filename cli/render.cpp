@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "analysis/image/image_bias.h"
 #include "analysis/image/picture_file.h"
 #include "analysis/image/render_photo.h"
 #include "analysis/pile/slope_profile.h"
@@ -118,8 +119,15 @@ int run_render(const RenderOptions& options) {
   if (options.out.has_parent_path()) fs::create_directories(options.out.parent_path());
   scree::write_picture(options.out, made.picture);
   scree::write_text_file(truth, scree::truth_csv(made.truth));
-  fmt::print("{}: {} x {} px, {:.4g} cm/px, {} grains to be seen, D50 of the rock {:.3g} m\ntruth: {}\n",
-             options.out.string(), made.picture.cols, made.picture.rows, 100 * photo.m_per_px,
-             made.truth.grains.size(), made.truth.scene_d50, truth.string());
+  std::string chi;
+  const auto gradings =
+      true_gradings(made.truth, {0, 0, made.picture.cols, made.picture.rows}, scree::PhotoAnalysisSettings{});
+  for (std::size_t k = 1; k < gradings.size(); ++k)
+    chi += gradings[k].grains > 0 ? fmt::format(" {:+.2f}", gradings[k].chi) : " -";
+  fmt::print(
+      "{}: {} x {} px, {:.4g} cm/px, {} grains to be seen, D50 of the rock {:.3g} m\nchi of S1, the top, to "
+      "S{}:{}\ntruth: {}\n",
+      options.out.string(), made.picture.cols, made.picture.rows, 100 * photo.m_per_px,
+      made.truth.grains.size(), made.truth.scene_d50, gradings.size() - 1, chi, truth.string());
   return kOk;
 }

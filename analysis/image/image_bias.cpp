@@ -134,26 +134,53 @@ ImageBias measure_bias(const std::vector<CheckedPhoto>& photos, SizeModel model)
   return bias;
 }
 
-TruthCheck check_against_truth(const PhotoAnalysis& found, const PhotoTruth& truth,
-                               const PhotoAnalysisSettings& settings) {
-  std::vector<double> diameters, masses, ideal_diameters, ideal_masses;
+namespace {
+
+// Known grains of a region that are to be seen, and the section of each.
+struct KnownGrains {
+  std::vector<const VisibleGrain*> grains;
   std::vector<int> section;
+};
+KnownGrains known_grains(const PhotoTruth& truth, const cv::Rect& region_box,
+                         const PhotoAnalysisSettings& settings) {
+  KnownGrains known;
   for (const VisibleGrain& grain : truth.grains) {
     if (grain.visible_area < settings.detection_area) continue;
-    const int in = section_of(grain.y, found.region_box, settings.sections);
+    const int in = section_of(grain.y, region_box, settings.sections);
     if (in < 0) continue;
-    diameters.push_back(grain.diameter);
-    masses.push_back(grain.mass);
+    known.grains.push_back(&grain);
+    known.section.push_back(in);
+  }
+  return known;
+}
+
+}  // namespace
+
+std::vector<ImageGrading> true_gradings(const PhotoTruth& truth, const cv::Rect& region_box,
+                                        const PhotoAnalysisSettings& settings) {
+  const KnownGrains known = known_grains(truth, region_box, settings);
+  std::vector<double> diameters, masses;
+  for (const VisibleGrain* grain : known.grains) {
+    diameters.push_back(grain->diameter);
+    masses.push_back(grain->mass);
+  }
+  return gradings_of(diameters, masses, known.section, settings.sections);
+}
+
+TruthCheck check_against_truth(const PhotoAnalysis& found, const PhotoTruth& truth,
+                               const PhotoAnalysisSettings& settings) {
+  const KnownGrains known = known_grains(truth, found.region_box, settings);
+  std::vector<double> diameters, masses;
+  for (const VisibleGrain* grain : known.grains) {
     // As size_of, without the factors that are the same for all.
     const bool sphere = settings.model == SizeModel::sphere;
-    const double b = sphere ? std::sqrt(grain.visible_area) : grain.visible_b;
-    ideal_diameters.push_back(sphere ? b * std::sqrt(4 / std::numbers::pi) : b);
-    ideal_masses.push_back((sphere ? b : grain.visible_a) * b * b);
-    section.push_back(in);
+    const double b = sphere ? std::sqrt(grain->visible_area) : grain->visible_b;
+    diameters.push_back(sphere ? b * std::sqrt(4 / std::numbers::pi) : b);
+    masses.push_back((sphere ? b : grain->visible_a) * b * b);
   }
-  return {gradings_of(diameters, masses, section, settings.sections),
+  return {true_gradings(truth, found.region_box, settings),
           gradings_of(found.grains, settings.sections, settings.model),
-          gradings_of(ideal_diameters, ideal_masses, section, settings.sections), truth.scene_d50};
+          gradings_of(diameters, masses, known.section, settings.sections), truth.scene_d50};
 }
 
 }  // namespace scree

@@ -30,8 +30,7 @@ struct ImageBias {
   int matched = 0;      ///< of which belong to a known grain
 };
 
-/// Known and measured values side by side. Known: grains of which an area above the detection limit can be
-/// seen, by their true diameters and masses.
+/// Known (true_gradings) and measured values side by side.
 struct TruthCheck {
   std::vector<ImageGrading> known, measured;  ///< whole, then sections
   /// Of perfect outlines of what can be seen, by the size model (ellipses for Feret's). What remains against
@@ -47,6 +46,11 @@ struct CheckedPhoto {
   const PhotoTruth* truth;
 };
 ImageBias measure_bias(const std::vector<CheckedPhoto>& photos, SizeModel model);
+
+/// Gradings of the grains of which more than the detection limit can be seen, by their true diameters and
+/// masses: the whole region, then its sections.
+std::vector<ImageGrading> true_gradings(const PhotoTruth& truth, const cv::Rect& region_box,
+                                        const PhotoAnalysisSettings& settings);
 
 TruthCheck check_against_truth(const PhotoAnalysis& found, const PhotoTruth& truth,
                                const PhotoAnalysisSettings& settings);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "analysis/image/graded_heights.h"
 #include "sim/material/random.h"
 
 namespace scree {
@@ -69,36 +70,48 @@ class Layout {
         random_(settings.seed, 2, RandomPurpose::picture),
         laid_(settings.width, settings.height, 1.15 * grading.max_diameter() + grading.min_diameter()) {}
 
-  // A place that nobody has, or none after many tries.
-  std::optional<Vec3> place(double diameter, double rank, const std::vector<Grain>& before) {
+  // A place that nobody has, at about the height that is wanted and in its band, or none after many tries:
+  // the more of them were in vain, the farther off it may be, in the end anywhere.
+  std::optional<Vec3> place(double diameter, const GradedHeight& height, const std::vector<Grain>& before) {
+    // Most grains that touch join others; some begin clusters of their own all over the picture.
+    bool joins = settings_.layout == GrainLayout::touching && !before.empty() && random_.uniform() < 0.8;
     for (int attempt = 0; attempt < 4000; ++attempt) {
-      // Most grains that touch join others; some begin clusters of their own all over the picture.
-      const bool joins = settings_.layout == GrainLayout::touching && !before.empty() && attempt < 3000 &&
-                         random_.uniform() < 0.8;
-      Vec3 at = joins ? beside(before, diameter) : anywhere(diameter);
-      // Coarse grains are taken more often at the foot, fine ones at the top.
-      const double down = at.y() / settings_.height;
-      if (random_.uniform() * (1 + std::abs(settings_.segregation)) >
-          1 + settings_.segregation * (2 * rank - 1) * (2 * down - 1))
+      const double slack = settings_.height / 96 * std::exp2(attempt / 600.0);
+      Heights allowed{std::max(diameter / 2, height.wanted - slack),
+                      std::min(settings_.height - diameter / 2, height.wanted + slack)};
+      if (attempt < 2000) allowed = {std::max(allowed.low, height.low), std::min(allowed.high, height.high)};
+      joins &= attempt < 3000;
+      const std::optional<Vec3> at = joins ? beside(before, diameter, allowed) : anywhere(diameter, allowed);
+      if (!at) {
+        joins = false;
         continue;
-      if (!inside(at, diameter) || !settle(at, diameter)) continue;
-      return at;
+      }
+      Vec3 settled = *at;
+      if (inside(settled, diameter) && settle(settled, diameter)) return settled;
     }
     return std::nullopt;
   }
   void add(const Grain& grain) { laid_.add(grain); }
 
  private:
-  Vec3 anywhere(double diameter) {
+  struct Heights {
+    double low, high;  // m down the picture
+  };
+  Vec3 anywhere(double diameter, const Heights& allowed) {
     const double r = diameter / 2;
     const double x = random_.uniform(r, settings_.width - r);
-    return {x, random_.uniform(r, settings_.height - r), 0};
+    return {x, random_.uniform(allowed.low, allowed.high), 0};
   }
-  Vec3 beside(const std::vector<Grain>& before, double diameter) {
-    const auto pick = static_cast<std::size_t>(random_.uniform() * static_cast<double>(before.size()));
-    const double angle = random_.uniform(0, 2 * std::numbers::pi);
-    const double reach = (before[pick].diameter + diameter) / 2 * (1 + 1e-9);
-    return before[pick].position + reach * Vec3(std::cos(angle), std::sin(angle), 0);
+  // Touching a grain; none where there is hardly one to be touched at these heights.
+  std::optional<Vec3> beside(const std::vector<Grain>& before, double diameter, const Heights& allowed) {
+    for (int draw = 0; draw < 500; ++draw) {
+      const auto pick = static_cast<std::size_t>(random_.uniform() * static_cast<double>(before.size()));
+      const double angle = random_.uniform(0, 2 * std::numbers::pi);
+      const double reach = (before[pick].diameter + diameter) / 2 * (1 + 1e-9);
+      const Vec3 at = before[pick].position + reach * Vec3(std::cos(angle), std::sin(angle), 0);
+      if (at.y() >= allowed.low && at.y() <= allowed.high) return at;
+    }
+    return std::nullopt;
   }
   bool inside(const Vec3& at, double diameter) const {
     const double r = diameter / 2;
@@ -145,22 +158,28 @@ RockScene make_scene(const Grading& grading, const SceneSettings& settings) {
         "the largest grain, {:.3g} m, is more than half of the picture of {:.3g} m x {:.3g} m: take "
         "more pixels, or more metres a pixel",
         largest, settings.width, settings.height));
-  std::vector<double> diameters = diameters_for(grading, settings);
+  struct Wanted {
+    double diameter;  // m
+    GradedHeight height;
+  };
+  std::vector<Wanted> wanted;
+  const std::vector<double> diameters = diameters_for(grading, settings);
+  const std::vector<GradedHeight> heights = graded_heights(diameters, grading, settings);
+  for (std::size_t k = 0; k < diameters.size(); ++k) wanted.push_back({diameters[k], heights[k]});
   if (settings.layout == GrainLayout::overlapping) {
     // A pile is no sorted one: any size may lie on any other.
     Random shuffle(settings.seed, 3, RandomPurpose::picture);
-    for (std::size_t i = diameters.size(); i > 1; --i)
-      std::swap(diameters[i - 1],
-                diameters[static_cast<std::size_t>(shuffle.uniform() * static_cast<double>(i))]);
+    for (std::size_t i = wanted.size(); i > 1; --i)
+      std::swap(wanted[i - 1], wanted[static_cast<std::size_t>(shuffle.uniform() * static_cast<double>(i))]);
   }
   RockScene scene{settings.width, settings.height, {}, {}};
   Layout layout(settings, grading);
-  for (const double d : diameters) {
-    const auto at = layout.place(d, grading.passing(d), scene.grains);
+  for (const auto& [d, height] : wanted) {
+    const auto at = layout.place(d, height, scene.grains);
     if (!at)
       throw std::invalid_argument(
           fmt::format("no room for a grain of {:.3g} m after {} of {} grains: take a coverage below {:.2g}",
-                      d, scene.grains.size(), diameters.size(), settings.coverage));
+                      d, scene.grains.size(), wanted.size(), settings.coverage));
     Grain grain;
     grain.id = static_cast<std::int64_t>(scene.grains.size()) + 1;
     grain.position = *at;

@@ -24,7 +24,7 @@ struct SceneSettings {
   double width = 12, height = 9;  ///< m
   GrainLayout layout = GrainLayout::apart;
   double coverage = 0.35;    ///< area of all grains' outlines over that of the picture
-  double segregation = 0;    ///< -1 to 1: how much coarser the foot of the picture is than its top
+  double segregation = 0;    ///< -1 to 1: how much coarser the foot is than the top, see graded_heights()
   double density = 2760;     ///< kg/m3
   double target_margin = 0;  ///< m: the square at the top right corner that stays free for a scale target
   std::uint64_t seed = 1;

@@ -1,11 +1,12 @@
 #pragma once
 // The formats that read_snapshot knows, each as it stands in the file.
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <string_view>
 
-#include "sim/material/input_text.h"
 #include "sim/io/snapshot_reader.h"
+#include "sim/material/input_text.h"
 
 namespace scree {
 
@@ -27,13 +28,15 @@ std::string_view meaning_of_column(std::string_view name);
 RawSnapshot read_csv_snapshot(const std::filesystem::path& file, double length_unit);
 RawSnapshot read_lammps_dump(const std::filesystem::path& file, std::string_view text,
                              std::optional<int> frame);
+RawSnapshot read_xyz(const std::filesystem::path& file, std::string_view text, std::optional<int> frame);
 RawSnapshot read_vtk(const std::filesystem::path& file, std::string_view bytes);
+RawSnapshot read_vtk_xml(const std::filesystem::path& file, std::string_view bytes);
 RawSnapshot read_trajectory_frame(const std::filesystem::path& file, std::optional<int> frame);
 
 /// Index of a frame from 0 among `count`; throws FileError.
 std::size_t frame_index(const std::filesystem::path& file, std::optional<int> frame, std::size_t count);
 
-/// Numbers of a text one after another, lines counted: what dumps and VTK files are made of.
+/// Numbers of a text one after another, lines counted: what dumps, XYZ and VTK files are made of.
 class TextCursor {
  public:
   TextCursor(const std::filesystem::path& file, std::string_view text, std::size_t at = 0, int line = 1)
@@ -43,6 +46,7 @@ class TextCursor {
   std::string_view word();                    ///< the next one, line ends passed over; empty at the end
   std::string_view bytes(std::size_t count);  ///< throws where there are fewer
   double number();                            ///< the next word; throws unless a finite number
+  std::string_view rest() const { return text_.substr(std::min(at_, text_.size())); }
   int line() const { return line_; }
   [[noreturn]] void fail(const std::string& message) const { throw FileError(file_, line_, message); }
 

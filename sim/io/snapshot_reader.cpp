@@ -44,10 +44,17 @@ RawSnapshot read_raw(const std::filesystem::path& file, const SnapshotOptions& o
     one_frame("a VTK file");
     return read_vtk(file, bytes);
   }
+  const std::size_t start = head.compare(0, 3, "\xEF\xBB\xBF") == 0 ? 3 : 0;  // after a byte order mark
+  if (head.compare(start, 5, "<?xml") == 0 || head.compare(start, 8, "<VTKFile") == 0) {
+    one_frame("a VTK file");
+    return read_vtk_xml(file, bytes);
+  }
   require_text(file, bytes);
   if (head.compare(0, 5, "ITEM:") == 0) return read_lammps_dump(file, bytes, options.frame);
-  if (head.compare(0, 5, "<?xml") == 0 || head.compare(0, 8, "<VTKFile") == 0)
-    throw FileError(file, 1, "XML: only legacy VTK files are read; save as .vtk or CSV");
+  const std::size_t end = head.find_first_of("\r\n");
+  if (const auto first = number_in(trimmed(head.substr(0, end)));
+      end != std::string::npos && first && *first >= 0)
+    return read_xyz(file, bytes, options.frame);
   one_frame("a table");
   return read_csv_snapshot(file, options.length_unit.value_or(1));
 }
@@ -72,7 +79,7 @@ std::string_view meaning_of_column(std::string_view name) {
   struct Alias {
     std::string_view name, meaning;
   };
-  static constexpr std::array<Alias, 36> kAliases{{
+  static constexpr std::array<Alias, 37> kAliases{{
       {"x", "x"},
       {"y", "y"},
       {"z", "z"},
@@ -94,6 +101,7 @@ std::string_view meaning_of_column(std::string_view name) {
       {"radius", "radius"},
       {"r", "radius"},
       {"rad", "radius"},
+      {"radii", "radius"},
       {"particle radius", "radius"},
       {"mass", "mass"},
       {"particle mass", "mass"},

@@ -28,11 +28,12 @@ struct SnapshotRead {
 };
 
 /// Reads CSV (columns x, y, z, diameter or radius, optional mass, id, dump; a unit in the header as `x_mm` or
-/// `x [mm]`), a text dump of LAMMPS or LIGGGHTS, a legacy VTK file (POLYDATA or UNSTRUCTURED_GRID, ASCII or
-/// binary, with a radius or diameter of the points), or a trajectory of scree (particles.h5). The format is
-/// told by the content. Throws FileError (input_text.h): no radius, no grains, a value that is no finite
-/// number, a diameter or mass that is not above 0, a grain farther away than 1e6 m, an id twice, a frame that
-/// is not there.
+/// `x [mm]`), a text dump of LAMMPS or LIGGGHTS, extended XYZ (OVITO, and particles.xyz of a run), a VTK file
+/// (POLYDATA or UNSTRUCTURED_GRID with a radius or diameter of the points; legacy, ASCII or binary, or XML,
+/// any encoding, plain or compressed by zlib), or a trajectory of scree (particles.h5). The format is told by
+/// the content. Throws FileError (input_text.h): no radius, no grains, a value that is no finite number, a
+/// diameter or mass that is not above 0, a grain farther away than 1e6 m, an id twice, a frame that is not
+/// there.
 SnapshotRead read_snapshot(const std::filesystem::path& file, const SnapshotOptions& options);
 
 }  // namespace scree

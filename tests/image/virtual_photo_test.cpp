@@ -209,6 +209,84 @@ TEST(Scene, FollowsItsGradingAndLiesApart) {
   EXPECT_GE(nearest, 0.05);
 }
 
+// chi that the density 1 + s (2p - 1)(2t - 1) of mass gives at a share t of the height: the mean of log d is
+// off that of all by s (2t - 1) times the integral of log d(p) (2p - 1) over p.
+double chi_due(const Grading& grading, double segregation, double t) {
+  constexpr int kSteps = 20000;
+  double all = 0, coarsest = 0, moment = 0;
+  for (int k = 0; k < kSteps; ++k) {
+    const double p = (k + 0.5) / kSteps, log = std::log(grading.diameter(p)) / kSteps;
+    all += log, moment += log * (2 * p - 1);
+    if (p > 0.75) coarsest += 4 * log;
+  }
+  return segregation * (2 * t - 1) * moment / (coarsest - all);
+}
+
+std::vector<double> chi_of(const std::vector<ImageGrading>& gradings) {
+  std::vector<double> chi;
+  for (std::size_t k = 1; k < gradings.size(); ++k) chi.push_back(gradings[k].chi);
+  return chi;
+}
+
+struct Laid {
+  GrainLayout layout;
+  double coverage;
+};
+class Segregated : public testing::TestWithParam<Laid> {};
+
+TEST_P(Segregated, HoldsInEveryPicture) {
+  // The whole grading, few blocks of which hold a quarter of the mass, and a picture of the program's size.
+  const Grading grading = read_grading(SCREE_TEST_ASSETS "/gradings/CM0.csv");
+  SceneSettings settings;
+  settings.layout = GetParam().layout;
+  settings.coverage = GetParam().coverage;
+  settings.width = 19.2, settings.height = 14.4;
+  settings.target_margin = 0.675;
+  for (const double segregation : {0.0, 0.5, 1.0, -0.5})
+    for (settings.seed = 1; settings.seed <= 3; ++settings.seed) {
+      SCOPED_TRACE(testing::Message() << "segregation " << segregation << ", seed " << settings.seed);
+      settings.segregation = segregation;
+      const RockScene scene = make_scene(grading, settings);
+      std::vector<double> diameters, masses;
+      std::vector<int> section;
+      for (const Grain& grain : scene.grains) {
+        diameters.push_back(grain.diameter), masses.push_back(grain.mass);
+        section.push_back(static_cast<int>(grain.position.y() / settings.height * 6));
+      }
+      const std::vector<double> chi = chi_of(gradings_of(diameters, masses, section, 6));
+      // One block may be a third of the mass of a section: chi cannot be met more closely.
+      for (std::size_t k = 0; k < 6; ++k)
+        EXPECT_NEAR(chi[k], chi_due(grading, segregation, (static_cast<double>(k) + 0.5) / 6), 0.15)
+            << "S" << k + 1;
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Scene, Segregated,
+                         testing::Values(Laid{GrainLayout::apart, 0.35}, Laid{GrainLayout::touching, 0.5},
+                                         Laid{GrainLayout::overlapping, 1.5}));
+
+TEST(VirtualPhoto, ShowsTheSegregationAskedFor) {
+  // Of what can be seen, hidden grains left out; at a scale of 3 cm/px, 9 cm2 a pixel.
+  for (const auto& [layout, coverage] : {Laid{GrainLayout::apart, 0.35}, Laid{GrainLayout::touching, 0.5},
+                                         Laid{GrainLayout::overlapping, 1.5}})
+    for (const double sign : {-1.0, 1.0})
+      for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        SCOPED_TRACE(testing::Message() << static_cast<int>(layout) << ", " << sign << ", seed " << seed);
+        SceneSettings settings;
+        settings.layout = layout, settings.coverage = coverage;
+        settings.width = 19.2, settings.height = 14.4;
+        settings.segregation = 0.5 * sign;
+        settings.seed = seed;
+        PhotoSettings camera;
+        camera.m_per_px = 0.03;
+        const Photo photo =
+            render_photo(make_scene(read_grading(SCREE_TEST_ASSETS "/gradings/CM0.csv"), settings), camera);
+        const std::vector<double> chi =
+            chi_of(true_gradings(photo.truth, {0, 0, photo.picture.cols, photo.picture.rows}, {}));
+        EXPECT_GT(sign * (chi[5] - chi[0]), 0.2);                    // due: 0.37
+        EXPECT_GT(sign * (chi[4] + chi[5] - chi[0] - chi[1]), 0.3);  // due: 0.59
+      }
+}
+
 TEST(Scene, RefusesWhatDoesNotFit) {
   SceneSettings settings;
   settings.width = settings.height = 1;

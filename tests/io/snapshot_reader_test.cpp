@@ -1,80 +1,13 @@
 // Piles out of files of other programs: one pile in every format, and what cannot be read.
-#include "sim/io/snapshot_reader.h"
-
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
+#include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <numbers>
 
-#include "sim/material/input_text.h"
 #include "sim/io/trajectory.h"
+#include "tests/io/snapshot_fixture.h"
 
 namespace scree {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
-
-std::vector<Grain> pile() {
-  std::vector<Grain> grains;
-  for (int k = 0; k < 5; ++k) {
-    Grain grain;
-    grain.id = 10 + k;
-    grain.position = Vec3(0.5 * k, -0.25 * k, 1 + 0.125 * k);
-    grain.diameter = 0.25 + 0.125 * k;
-    grain.mass = 2000 * std::numbers::pi / 6 * std::pow(grain.diameter, 3);
-    grain.dump = 1 + k / 3;
-    grains.push_back(grain);
-  }
-  return grains;
-}
-
-class SnapshotReader : public testing::Test {
- protected:
-  SnapshotReader() { fs::create_directories(folder); }
-  ~SnapshotReader() override { fs::remove_all(folder); }
-  fs::path put(const std::string& text, const std::string& name = "pile.txt") {
-    std::ofstream(folder / name, std::ios::binary) << text;
-    return folder / name;
-  }
-  SnapshotRead read(const std::string& text, const SnapshotOptions& options = {}) {
-    return read_snapshot(put(text), options);
-  }
-  std::string error(const std::string& text, const SnapshotOptions& options = {}) {
-    try {
-      read(text, options);
-    } catch (const FileError& failure) {
-      return failure.what();
-    }
-    return "";
-  }
-  // The pile of above, whatever it was read from: places and sizes.
-  static void expect_the_pile(const SnapshotRead& read, const Vec3& shift = Vec3::Zero()) {
-    const auto expected = pile();
-    ASSERT_EQ(read.snapshot.grains.size(), expected.size());
-    for (std::size_t k = 0; k < expected.size(); ++k) {
-      const Grain& grain = read.snapshot.grains[k];
-      EXPECT_NEAR((grain.position - expected[k].position - shift).norm(), 0, 1e-6) << k;
-      EXPECT_NEAR(grain.diameter, expected[k].diameter, 1e-6) << k;
-      EXPECT_NEAR(grain.mass, expected[k].mass, 1e-3) << k;
-    }
-  }
-  std::string csv(const char* header, double length = 1, bool with_mass = true) const {
-    std::string text = std::string(header) + "\n";
-    for (const Grain& g : pile())
-      text += fmt::format("{},{},{},{},{},{}{}\n", g.id, g.position.x() * length, g.position.y() * length,
-                          g.position.z() * length, g.diameter * length, g.dump,
-                          with_mass ? fmt::format(",{}", g.mass) : "");
-    return text;
-  }
-  const fs::path folder = fs::temp_directory_path() / ("scree_snapshot_" + std::to_string(getpid()));
-};
 
 // The pile as a VTK file; numbers as text, or big-endian.
 std::string vtk(bool binary, bool polydata) {
@@ -236,7 +169,6 @@ TEST_F(SnapshotReader, WhatCannotBeReadIsNamed) {
   EXPECT_THAT(error("x,y,z,radius,dump\n0,0,0,1,0\n"), HasSubstr("dump must be an integer from 1 on"));
   EXPECT_THAT(error("x [ft],y,z,radius\n0,0,0,1\n"), HasSubstr("none of m, cm, mm, um"));
   EXPECT_THAT(error("x,y,z,radius,x_mm\n0,0,0,1,1\n"), HasSubstr("two columns are 'x'"));
-  EXPECT_THAT(error("<?xml version=\"1.0\"?>\n<VTKFile>"), HasSubstr("only legacy VTK"));
   EXPECT_THAT(error("\x89HDF\r\n\x1A\n and nothing else"), HasSubstr("damaged HDF5"));
   SnapshotOptions options;
   EXPECT_THROW(read_snapshot(folder / "none.csv", options), FileError);
@@ -264,6 +196,9 @@ TEST_F(SnapshotReader, BrokenVtkIsNamed) {
   std::string text = vtk(false, true);
   text.replace(text.find("POLYDATA"), 8, "STRUCTURED_POINTS");
   EXPECT_THAT(error(text), HasSubstr("POLYDATA or UNSTRUCTURED_GRID"));
+  EXPECT_THAT(error(vtk(false, true) + "radius 1 5 float\n1 1 1 1 1\n"), HasSubstr("'radius' is not known"));
+  EXPECT_THAT(error(vtk(false, true) + "FIELD more 1\nr 1 5 float\n1 1 1 1 1\n"),
+              HasSubstr("two arrays of the points are 'radius'"));
   EXPECT_THAT(error("# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\nPOINTS 1e30 float\n"),
               HasSubstr("is no count"));
   EXPECT_THAT(error("# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n0 nan 0\n"),
