@@ -20,31 +20,34 @@ Grading from_assets(const std::string& name) {
   return read_grading(std::filesystem::path(SCREE_SOURCE_DIR) / "assets" / "gradings" / (name + ".csv"));
 }
 
-double mass_of(double d) {
-  return density * std::numbers::pi / 6 * d * d * d;
+double mass_of(double d, double exponent = 0) {
+  return density * std::pow(d / 0.3, exponent) * std::numbers::pi / 6 * d * d * d;
 }
 
 struct Load {
   std::string grading;
-  double mass;  // kg
+  double mass;          // kg
+  double exponent = 0;  // of size in the density
 };
 
 class GeneratedLoad : public testing::TestWithParam<Load> {};
 
 TEST_P(GeneratedLoad, KeepsPassingWithin2PointsAndMassWithinHalfAPercent) {
   const Grading grading = from_assets(GetParam().grading);
+  const double exponent = GetParam().exponent;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-    const auto diameters = generate_diameters(grading, GetParam().mass, {density}, seed, seed % 4 + 1);
+    const auto diameters =
+        generate_diameters(grading, GetParam().mass, {density, exponent, 0.3}, seed, seed % 4 + 1);
     ASSERT_TRUE(std::is_sorted(diameters.rbegin(), diameters.rend()));
     ASSERT_LE(diameters.front(), grading.max_diameter());
     ASSERT_GE(diameters.back(), grading.min_diameter());
     double total = 0;
-    for (const double d : diameters) total += mass_of(d);
+    for (const double d : diameters) total += mass_of(d, exponent);
     EXPECT_NEAR(total, GetParam().mass, 0.005 * GetParam().mass) << "seed " << seed;
     for (const auto& point : grading.points()) {
       double finer = 0;
       for (const double d : diameters)
-        if (d <= point.diameter) finer += mass_of(d);
+        if (d <= point.diameter) finer += mass_of(d, exponent);
       EXPECT_NEAR(finer / total, point.passing, 0.02) << "seed " << seed << " at " << point.diameter << " m";
     }
   }
@@ -52,10 +55,15 @@ TEST_P(GeneratedLoad, KeepsPassingWithin2PointsAndMassWithinHalfAPercent) {
 
 INSTANTIATE_TEST_SUITE_P(Loads, GeneratedLoad,
                          testing::Values(Load{"CM0", 300e3}, Load{"QB0", 300e3}, Load{"QB0", 100e3},
-                                         Load{"Lab0", 75}, Load{"Lab0", 20}),
+                                         Load{"Lab0", 75}, Load{"Lab0", 20}, Load{"CM0", 300e3, 0.2},
+                                         Load{"CM0", 300e3, -0.5}),
                          [](const auto& load) {
+                           const double e = load.param.exponent;
                            return load.param.grading + "_" + std::to_string(std::lround(load.param.mass)) +
-                                  "kg";
+                                  "kg" +
+                                  (e > 0   ? "_dense_blocks"
+                                   : e < 0 ? "_light_blocks"
+                                           : "");
                          });
 
 TEST(GenerateDiameters, Qb0DumpHasThePrintedNumberOfSpheres) {
