@@ -32,11 +32,14 @@ constexpr double mass_bound = 0.0049;     // share; the promise is 0.5 %
 constexpr int most_draws = 200;
 constexpr double most_spheres = 2e7;
 
-/// Mass of a sphere over that of one of 1 m: d^power.
+/// The mass of a sphere grows with d^power.
 class SphereShape {
  public:
   explicit SphereShape(const RockDensity& density) : power_(3 + density.exponent) {}
-  double operator()(double d) const { return power_ == 3 ? d * d * d : std::pow(d, power_); }
+  /// factor d^power
+  double operator()(double factor, double d) const {
+    return power_ == 3 ? factor * d * d * d : factor * std::pow(d, power_);
+  }
   double power() const { return power_; }
 
  private:
@@ -49,17 +52,17 @@ class CoarseToFine {
   CoarseToFine(const Grading& grading, const SphereShape& shape)
       : points_(grading.points()), shape_(shape), segment_(grading.points().size() - 1) {}
 
-  /// Root d of d = D(1 - (mass_share + scale shape(d))), scale below `sphere`: sphere shape(d) is the share
+  /// Root d of d = D(1 - (mass_share + scale d^power)), scale below `sphere`: sphere d^power is the share
   /// of the mass that a sphere has.
   double solve(double mass_share, double scale, double sphere) {
-    const auto rest = [&](double d) { return 1 - mass_share - scale * shape_(d); };
+    const auto rest = [&](double d) { return 1 - mass_share - shape_(scale, d); };
     while (segment_ + 1 < points_.size() && rest(points_[segment_].diameter) > points_[segment_].passing)
       ++segment_;
     while (segment_ > 1 && rest(points_[segment_ - 1].diameter) < points_[segment_ - 1].passing) --segment_;
     const auto &a = points_[segment_ - 1], &b = points_[segment_];
     // A gap is crossed where less than half a sphere of its coarse end is left above it, whatever u.
     const auto is_left = [&](const Grading::Point& coarse) {
-      return 1 - coarse.passing - mass_share >= 0.5 * sphere * shape_(coarse.diameter);
+      return 1 - coarse.passing - mass_share >= shape_(0.5 * sphere, coarse.diameter);
     };
     if (segment_ > 1 && a.passing == points_[segment_ - 2].passing && !is_left(a))
       return points_[segment_ - 2].diameter;
@@ -74,7 +77,7 @@ class CoarseToFine {
       const double d = a.diameter * std::exp(t);
       const double f = a.passing + slope * t - rest(d);
       (f > 0 ? high : low) = t;
-      double next = t - f / (slope + shape_.power() * scale * shape_(d));
+      double next = t - f / (slope + shape_(shape_.power() * scale, d));
       if (!(next > low && next < high)) next = 0.5 * (low + high);
       if (std::abs(next - t) < 1e-13) break;
       t = next;
@@ -91,14 +94,14 @@ class CoarseToFine {
 std::vector<double> draw(const Grading& grading, double mass, double sphere_factor, const SphereShape& shape,
                          Random& random) {
   CoarseToFine curve(grading, shape);
-  const double finest = sphere_factor * shape(grading.min_diameter());
+  const double finest = sphere_factor * std::pow(grading.min_diameter(), shape.power());
   std::vector<double> diameters;
   double drawn = 0;
   // A last sphere that would leave more mass over than without it is not drawn.
   while (drawn + 0.5 * finest < mass) {
     const double d = curve.solve(drawn / mass, random.uniform() * sphere_factor / mass, sphere_factor / mass);
     diameters.push_back(d);
-    drawn += sphere_factor * shape(d);
+    drawn += shape(sphere_factor, d);
   }
   return diameters;
 }
@@ -114,7 +117,7 @@ double worst_error(const std::vector<double>& diameters, const Grading& grading,
     const auto above =
         std::lower_bound(points.begin(), points.end(), d,
                          [](const Grading::Point& point, double x) { return point.diameter < x; });
-    const double sphere = sphere_factor * shape(d);
+    const double sphere = shape(sphere_factor, d);
     between[std::min<std::size_t>(above - points.begin(), points.size() - 1)] += sphere;
     total += sphere;
   }
@@ -149,7 +152,7 @@ std::vector<double> generate_diameters(const Grading& grading, double mass, cons
   const SphereShape shape(density);
   const double sphere_factor =
       density.value * std::numbers::pi / 6 * std::pow(density.diameter, -density.exponent);
-  if (mass < sphere_factor * shape(grading.min_diameter()))
+  if (mass < sphere_factor * std::pow(grading.min_diameter(), shape.power()))
     throw std::invalid_argument(
         fmt::format("mass {} kg is less than the smallest sphere of grading {}", mass, grading.name()));
   if (const double count = expected_count(grading, mass, sphere_factor, shape); count > most_spheres)

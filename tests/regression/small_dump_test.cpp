@@ -50,13 +50,11 @@ TEST(SmallDump, HoistedBedSegregates) {
 }
 
 TEST(SmallDump, BladePushesRockThatSleeps) {
-  // The blade stands still for 12 s, while the heap at the crest falls asleep, and then moves 11 m towards
-  // the crest.
-  const Scenario scenario =
-      scenario_of("user_mesh_tool.yaml", {"stop.min_time_s=24", "experiment.truck.setback_m=9"});
+  // The blade stands still for 20 s, while the heap at the crest falls asleep, and then moves over the crest.
+  const Scenario scenario = scenario_of("user_mesh_tool.yaml", {"experiment.truck.setback_m=9"});
   const RunOutcome outcome = run_scenario(scenario, 10001, 1, {});
   EXPECT_TRUE(outcome.at_rest);
-  // The blade ends with its edge 1 m behind the crest; it is 8 m wide. Nothing of some size stays in its way.
+  // The blade is 8 m wide. Nothing of some size stays in its way.
   int behind = 0;
   for (const Grain& grain : outcome.final_state.grains)
     if (std::abs(grain.position.y()) < 3 && grain.position.x() > -7 && grain.position.x() < -2.0 &&
