@@ -156,9 +156,10 @@ class KeyCheck {
 
 }  // namespace
 
-std::vector<std::string> why_not_simulated(const DiagnosisModel& model, const Dataset::Experiment& experiment,
-                                           const fs::path& asset_dir) {
-  std::vector<std::string> reasons;
+std::vector<ScenarioError> why_not_simulated(const DiagnosisModel& model,
+                                             const Dataset::Experiment& experiment,
+                                             const fs::path& asset_dir) {
+  std::vector<ScenarioError> reasons;
   for (const double end : {-1.0, 1.0}) {
     const ModelPoint point{Eigen::VectorXd::Constant(static_cast<Eigen::Index>(model.base.size()), end), {}};
     const ScenarioResult loaded =
@@ -166,8 +167,13 @@ std::vector<std::string> why_not_simulated(const DiagnosisModel& model, const Da
                       ReadFor::numbers);
     for (const ScenarioError& error : loaded.errors) {
       std::string text = error.text();
-      if (text.starts_with("--set ")) text.erase(0, 6);  // of the model here
-      reasons.push_back(fmt::format("experiment {}: {}", experiment.name, text));
+      Place place = model.place;
+      if (text.starts_with("--set ")) {  // a key of the model, or of the experiment
+        text.erase(0, 6);
+        if (const auto at = model.places.find(text.substr(0, text.find('='))); at != model.places.end())
+          place = at->second;
+      }
+      report(reasons, place, fmt::format("experiment {}: {}", experiment.name, text));
     }
     if (!reasons.empty()) break;
   }
@@ -189,6 +195,10 @@ DiagnosisModelResult load_model(const fs::path& file, const fs::path& asset_dir)
   std::vector<std::string> names;
   for (const BaseAxis& axis : model.base) names.push_back(axis.key);
   model.variation = read_variation(*root, names, reader);
+  model.place = root->place;
+  for (const char* map : {"parameters", "ties", "set"})
+    if (const YamlEntry* at = root->find(map))
+      for (const YamlEntry& entry : at->value.entries) model.places[entry.key] = entry.key_place;
   read_effects(*root, model, reader);
   if (reader.good()) KeyCheck(*root, model, asset_dir, reader).run();
   if (const YamlNode* counts = reader.map_at(*root, "simulations", false, "a map of numbers")) {
@@ -205,8 +215,8 @@ DiagnosisModelResult load_model(const fs::path& file, const fs::path& asset_dir)
   read_experiments(*root, file, asset_dir, model, reader);
   if (!reader.good()) return result;
   for (const ModelExperiment& each : model.experiments)
-    for (const std::string& reason : why_not_simulated(model, each.experiment, asset_dir))
-      reader.fail(root->place, reason);
+    for (ScenarioError& reason : why_not_simulated(model, each.experiment, asset_dir))
+      result.errors.push_back(std::move(reason));
   return result;
 }
 
