@@ -100,10 +100,7 @@ int run_diagnose(const DiagnoseOptions& options) {
     scree::DatasetResult dataset = scree::load_dataset(file, asset_dir());
     if (!nothing_wrong(dataset.errors)) return kBadInput;
     for (const scree::Dataset::Experiment& experiment : dataset.dataset.experiments) {
-      const auto reasons = scree::why_not_simulated(loaded.model, experiment, asset_dir());
-      for (const std::string& reason : reasons)
-        fmt::print(stderr, "{}: {}\n", options.model.string(), scree::one_line(reason));
-      if (!reasons.empty()) return kBadInput;
+      if (!nothing_wrong(scree::why_not_simulated(loaded.model, experiment, asset_dir()))) return kBadInput;
     }
     datasets.push_back(std::move(dataset.dataset));
   }

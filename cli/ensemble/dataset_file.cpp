@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "cli/ensemble/dataset_bounds.h"
 #include "cli/ensemble/dataset_tables.h"
 #include "cli/ensemble/file_reader.h"
 #include "sim/scene/scenario_values.h"
@@ -50,9 +51,9 @@ std::optional<double> default_uncertainty(const YamlNode& root, FileReader& read
   const YamlEntry* entry = root.find("default_relative_uncertainty");
   if (entry == nullptr) return std::nullopt;
   const auto value = reader.number(entry->value, entry->key);
-  if (value && !(*value > 0))
+  if (value && !(*value > 0 && *value < 1))
     reader.fail(entry->value.place,
-                "default_relative_uncertainty: must be above 0 (0.1 is 10 % of the value)");
+                "default_relative_uncertainty: must be above 0 and below 1 (10 % is 0.1)");
   return value;
 }
 
@@ -105,6 +106,7 @@ DatasetResult load_dataset(const fs::path& file, const fs::path& asset_dir) {
   std::vector<double> factors;
   read_observables(*table, dataset, factors, result.errors);
   if (reader.good() && covariance) read_covariance(*covariance, factors, dataset, result.errors);
+  if (reader.good()) check_bounds(*table, dataset, result.errors);
   if (reader.good()) complete_uncertainties(*table, relative, dataset, result.errors);
   if (reader.good()) result.dataset = std::move(dataset);
   return result;

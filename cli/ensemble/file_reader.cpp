@@ -23,8 +23,10 @@ const YamlNode* FileReader::map_at(const YamlNode& parent, const char* key, bool
     if (required) fail(parent.place, fmt::format("'{}' is missing: {}", key, what));
     return nullptr;
   }
-  if (entry->value.kind == YamlKind::map && !entry->value.entries.empty()) return &entry->value;
-  fail(entry->value.place, fmt::format("{}: {} is expected, found {}", key, what, found(entry->value)));
+  const bool is_map = entry->value.kind == YamlKind::map, empty = is_map && entry->value.entries.empty();
+  if (is_map && !(required && empty)) return &entry->value;
+  fail(entry->value.place,
+       fmt::format("{}: {} is expected, found {}", key, what, empty ? "an empty map" : found(entry->value)));
   return nullptr;
 }
 
@@ -110,7 +112,8 @@ Variation read_variation(const YamlNode& root, const std::vector<std::string>& p
   const auto is_parameter = [&](const std::string& key) {
     return std::find(parameters.begin(), parameters.end(), key) != parameters.end();
   };
-  if (const YamlNode* set = reader.map_at(root, "set", false, "a map of keys of the scenario"))
+  const YamlNode* set = reader.map_at(root, "set", false, "a map of keys of the scenario");
+  if (set != nullptr)
     for (const YamlEntry& entry : set->entries) {
       if (is_parameter(entry.key))
         reader.fail(entry.key_place, fmt::format("set.{}: is a parameter itself", entry.key));
@@ -127,6 +130,8 @@ Variation read_variation(const YamlNode& root, const std::vector<std::string>& p
                                                  shown(*leader), join(parameters)));
     if (is_parameter(entry.key))
       reader.fail(entry.key_place, fmt::format("ties.{}: is a parameter itself", entry.key));
+    if (const YamlEntry* fixed = set == nullptr ? nullptr : set->find(entry.key))
+      reader.fail(fixed->key_place, fmt::format("set.{}: follows {} in ties", entry.key, *leader));
     variation.ties.push_back({entry.key, *leader});
   }
   return variation;

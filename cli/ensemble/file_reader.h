@@ -17,7 +17,8 @@ class FileReader {
   bool good() const { return errors_.empty(); }
   /// Refuses keys that are not among these; `where`: " in a grid".
   void allow(const YamlNode& map, const std::vector<std::string>& allowed, const std::string& where);
-  /// The map at a key; null, with an error if it is required or no map, when it is not there.
+  /// The map at a key; null when it is not there or no map. That is an error, and so is an empty one, where
+  /// it is required; another may be empty or left out.
   const YamlNode* map_at(const YamlNode& parent, const char* key, bool required, const char* what);
   /// The list at a key, with an entry at least.
   const YamlNode* list_at(const YamlNode& parent, const char* key, bool required, const char* what);
@@ -48,7 +49,7 @@ struct Variation {
 };
 
 /// Reads `set` and `ties`; the keys followed must be among `parameters`, those that follow or are set must
-/// not.
+/// not, and no key may do both.
 Variation read_variation(const YamlNode& root, const std::vector<std::string>& parameters,
                          FileReader& reader);
 

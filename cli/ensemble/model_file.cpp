@@ -7,6 +7,7 @@
 #include "analysis/diagnose/response_surface.h"
 #include "cli/ensemble/output_scope.h"
 #include "sim/effects/effect.h"
+#include "sim/scene/scenario_read.h"
 #include "sim/scene/scenario_values.h"
 
 namespace scree {
@@ -98,18 +99,82 @@ void read_experiments(const YamlNode& root, const fs::path& file, const fs::path
   }
 }
 
+// Keys and values of parameters, ties and set that no scenario takes, and effects that are given and looked
+// for. The maps themselves are read already.
+class KeyCheck {
+ public:
+  KeyCheck(const YamlNode& root, const DiagnosisModel& model, const fs::path& asset_dir, FileReader& reader)
+      : root_(root), model_(model), asset_dir_(asset_dir), reader_(reader) {}
+
+  void run() {
+    each_of("parameters", [&](const YamlEntry& entry) {
+      bool good = true;
+      for (const char* end : {"from", "to"})
+        if (const YamlEntry* value = good ? entry.value.find(end) : nullptr)
+          good = check("parameters", entry, value->value.text, value->value.place);
+      if (!good) bad_.push_back(entry.key);
+    });
+    each_of("ties", [&](const YamlEntry& entry) {
+      if (std::find(bad_.begin(), bad_.end(), entry.value.text) != bad_.end()) return;
+      for (const BaseAxis& leader : model_.base)
+        if (leader.key == entry.value.text &&
+            check("ties", entry, fmt::format("{}", leader.from), entry.key_place))
+          check("ties", entry, fmt::format("{}", leader.to), entry.key_place);
+    });
+    each_of("set", [&](const YamlEntry& entry) {
+      if (entry.value.kind == YamlKind::scalar) check("set", entry, entry.value.text, entry.value.place);
+    });
+  }
+
+ private:
+  template <class Check>
+  void each_of(const char* map, Check check) {
+    const YamlEntry* at = root_.find(map);
+    if (at == nullptr) return;
+    for (const YamlEntry& entry : at->value.entries) {
+      check(entry);
+      for (const std::string& effect : model_.effects)
+        if (entry.key.starts_with("effects." + effect + "."))
+          reader_.fail(entry.key_place, fmt::format("{}.{}: {} is looked for, too; leave it out of `effects`",
+                                                    map, entry.key, effect));
+    }
+  }
+
+  bool check(const char* map, const YamlEntry& entry, const std::string& value, const Place& place) {
+    const std::string why = why_not_set(entry.key + "=" + value, asset_dir_);
+    if (!why.empty())
+      reader_.fail(why.starts_with("unknown key") ? entry.key_place : place, fmt::format("{}: {}", map, why));
+    return why.empty();
+  }
+
+  const YamlNode& root_;
+  const DiagnosisModel& model_;
+  const fs::path& asset_dir_;
+  FileReader& reader_;
+  std::vector<std::string> bad_;  // parameters
+};
+
 }  // namespace
 
-std::vector<std::string> why_not_simulated(const DiagnosisModel& model, const Dataset::Experiment& experiment,
-                                           const fs::path& asset_dir) {
-  std::vector<std::string> reasons;
+std::vector<ScenarioError> why_not_simulated(const DiagnosisModel& model,
+                                             const Dataset::Experiment& experiment,
+                                             const fs::path& asset_dir) {
+  std::vector<ScenarioError> reasons;
   for (const double end : {-1.0, 1.0}) {
     const ModelPoint point{Eigen::VectorXd::Constant(static_cast<Eigen::Index>(model.base.size()), end), {}};
     const ScenarioResult loaded =
         load_scenario(experiment.file, overrides_at(model, {model.base, {}}, experiment, point), asset_dir,
                       ReadFor::numbers);
-    for (const ScenarioError& error : loaded.errors)
-      reasons.push_back(fmt::format("experiment {}: {}", experiment.name, error.text()));
+    for (const ScenarioError& error : loaded.errors) {
+      std::string text = error.text();
+      Place place = model.place;
+      if (text.starts_with("--set ")) {  // a key of the model, or of the experiment
+        text.erase(0, 6);
+        if (const auto at = model.places.find(text.substr(0, text.find('='))); at != model.places.end())
+          place = at->second;
+      }
+      report(reasons, place, fmt::format("experiment {}: {}", experiment.name, text));
+    }
     if (!reasons.empty()) break;
   }
   return reasons;
@@ -130,7 +195,12 @@ DiagnosisModelResult load_model(const fs::path& file, const fs::path& asset_dir)
   std::vector<std::string> names;
   for (const BaseAxis& axis : model.base) names.push_back(axis.key);
   model.variation = read_variation(*root, names, reader);
+  model.place = root->place;
+  for (const char* map : {"parameters", "ties", "set"})
+    if (const YamlEntry* at = root->find(map))
+      for (const YamlEntry& entry : at->value.entries) model.places[entry.key] = entry.key_place;
   read_effects(*root, model, reader);
+  if (reader.good()) KeyCheck(*root, model, asset_dir, reader).run();
   if (const YamlNode* counts = reader.map_at(*root, "simulations", false, "a map of numbers")) {
     SimulationCounts& n = model.simulations;
     reader.allow(*counts, {"nominal", "base", "effect", "check", "rounds"}, " in simulations");
@@ -145,8 +215,8 @@ DiagnosisModelResult load_model(const fs::path& file, const fs::path& asset_dir)
   read_experiments(*root, file, asset_dir, model, reader);
   if (!reader.good()) return result;
   for (const ModelExperiment& each : model.experiments)
-    for (const std::string& reason : why_not_simulated(model, each.experiment, asset_dir))
-      reader.fail(root->place, reason);
+    for (ScenarioError& reason : why_not_simulated(model, each.experiment, asset_dir))
+      result.errors.push_back(std::move(reason));
   return result;
 }
 

@@ -37,6 +37,8 @@ struct DiagnosisModel {
   std::vector<std::string> effects;  ///< names of those to be considered
   std::vector<ModelExperiment> experiments;
   SimulationCounts simulations;
+  Place place;                          ///< of the file's content
+  std::map<std::string, Place> places;  ///< of the keys in parameters, ties and set
 };
 
 struct DiagnosisModelResult {
@@ -56,9 +58,10 @@ struct DiagnosisModelResult {
 DiagnosisModelResult load_model(const std::filesystem::path& file, const std::filesystem::path& asset_dir);
 
 /// What would be refused only in the middle of a design: reasons why the experiment is no scenario at an end
-/// of the parameters' ranges; none if all is well.
-std::vector<std::string> why_not_simulated(const DiagnosisModel& model, const Dataset::Experiment& experiment,
-                                           const std::filesystem::path& asset_dir);
+/// of the parameters' ranges, at the keys of the model; none if all is well.
+std::vector<ScenarioError> why_not_simulated(const DiagnosisModel& model,
+                                             const Dataset::Experiment& experiment,
+                                             const std::filesystem::path& asset_dir);
 
 /// The space that a diagnosis of these experiments searches: the model's effects that act in any of them,
 /// with what the model sets, less those of `without`.

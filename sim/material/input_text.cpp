@@ -17,6 +17,29 @@ std::string in_quotes(std::string_view text) {
   return fmt::format("'{}{}'", text.substr(0, 40), text.size() > 40 ? "..." : "");
 }
 
+// 1.210: a thousand or a fraction, where commas are decimal. 0.210 can only be a fraction.
+bool may_have_a_thousands_separator(std::string_view text) {
+  if (!text.empty() && (text.front() == '+' || text.front() == '-')) text.remove_prefix(1);
+  const auto point = text.find('.');
+  return point >= 1 && point <= 3 && text.size() == point + 4 && text.front() != '0' &&
+         std::count_if(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }) ==
+             static_cast<std::ptrdiff_t>(text.size()) - 1;
+}
+
+// Whether any field of a table is a number with a decimal comma.
+bool has_decimal_commas(std::string_view text, char separator) {
+  if (text.find(',') == std::string_view::npos) return false;
+  while (!text.empty()) {
+    const auto end = std::min(text.find_first_of(std::string{separator, '\r', '\n'}), text.size());
+    std::string_view field = trimmed(text.substr(0, end));
+    if (field.size() > 2 && field.front() == '"' && field.back() == '"')
+      field = field.substr(1, field.size() - 2);
+    if (field.find(',') != std::string_view::npos && number_in(field, true)) return true;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string_view trimmed(std::string_view text) {
@@ -50,7 +73,12 @@ std::optional<double> number_in(std::string_view text, bool comma) {
 
 DelimitedTable::DelimitedTable(const std::filesystem::path& file, std::uintmax_t most)
     : file_(file), text_(read_input_text(file, most)) {
-  // The separator is the header's; read it once to see which.
+  if (const int line = line_that_is_not_utf8(text_))
+    throw FileError(file, line, "is not UTF-8; save it as CSV UTF-8");
+  const std::optional<char> stated = read_separator();
+  const std::size_t start = at_;
+  const int start_line = line_;
+  // Else the separator is the header's; read it once to see which.
   separator_ = '\n';
   if (!read_row()) throw FileError(file, 0, "the file has no header");
   const std::string head = fields_.front();
@@ -59,8 +87,11 @@ DelimitedTable::DelimitedTable(const std::filesystem::path& file, std::uintmax_t
     if (candidate == ' ' || head.find(candidate) != std::string::npos) break;
   }
   if (separator_ == ' ' && trimmed(head).find(' ') == std::string_view::npos) separator_ = ',';  // one column
-  at_ = 0, line_ = 1;
-  read_row();
+  separator_ = stated.value_or(separator_);
+  at_ = start, line_ = start_line;
+  if (!read_row()) throw FileError(file, 0, "the file has no header");
+  if (separator_ == ';' || separator_ == '\t')
+    decimal_commas_ = has_decimal_commas(std::string_view(text_).substr(at_), separator_);
   header_line_ = row_line_;
   header_.assign(fields_.begin(), fields_.begin() + static_cast<std::ptrdiff_t>(used_));
   for (std::size_t k = 0; k < header_.size(); ++k) {
@@ -94,11 +125,30 @@ bool DelimitedTable::next() {
 std::optional<double> DelimitedTable::number(std::size_t column) const {
   const std::string& text = fields_[column];
   if (text.empty()) return std::nullopt;
-  if (const auto value = number_in(text, separator_ == ';' || separator_ == '\t')) return value;
+  const auto value = number_in(text, separator_ == ';' || separator_ == '\t');
+  if (value && decimal_commas_ && may_have_a_thousands_separator(text)) {
+    std::string whole = text;
+    whole.erase(whole.find('.'), 1);
+    fail(fmt::format(
+        "{}: {}: is it {} or {}? write it without a thousands separator, and with a decimal comma",
+        header_[column], in_quotes(text), whole, *value));
+  }
+  if (value) return value;
   const std::string word = in_small_letters(text);
   if (word == "nan" || word == "inf" || word == "-inf" || word == "infinity" || word == "-nan")
     fail(fmt::format("{}: {} is not finite", header_[column], text));
   fail(fmt::format("{}: {} is no number", header_[column], in_quotes(text)));
+}
+
+std::optional<char> DelimitedTable::read_separator() {
+  const std::size_t end = std::min(text_.find('\n', 0), text_.size());
+  const std::string_view first = std::string_view(text_).substr(0, end);
+  if (in_small_letters(first.substr(0, 4)) != "sep=" || first.size() < 5) return std::nullopt;
+  const char separator = first[4];
+  if (separator != ';' && separator != ',' && separator != '\t') return std::nullopt;
+  at_ = std::min(end + 1, text_.size());
+  line_ = 2;
+  return separator;
 }
 
 bool DelimitedTable::at_line_end() const {
@@ -133,32 +183,38 @@ void DelimitedTable::read_field(std::string& field) {
 }
 
 bool DelimitedTable::read_row() {
-  // To the next line that says something.
+  do {
+    if (!go_to_text()) return false;
+    row_line_ = line_;
+    used_ = 0;
+    while (true) {
+      if (separator_ == ' ') {
+        while (!at_line_end() && is_blank(text_[at_])) ++at_;
+        if (at_line_end() && used_ > 0) break;
+      }
+      if (used_ == fields_.size()) fields_.emplace_back();
+      read_field(fields_[used_++]);
+      if (at_line_end()) break;
+      ++at_;
+    }
+    if (at_ < text_.size() && text_[at_] == '\r') ++at_;
+    if (at_ < text_.size() && text_[at_] == '\n') ++at_;
+    ++line_;
+  } while (std::all_of(fields_.begin(), fields_.begin() + static_cast<std::ptrdiff_t>(used_),
+                       [](const std::string& field) { return field.empty(); }));
+  return true;
+}
+
+bool DelimitedTable::go_to_text() {
   for (;; ++line_) {
     if (at_ >= text_.size()) return false;
-    std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
     std::string_view whole = std::string_view(text_).substr(at_, end - at_);
     if (!whole.empty() && whole.back() == '\r') whole.remove_suffix(1);
     whole = trimmed(whole);
-    if (!whole.empty() && whole.front() != '#') break;
+    if (!whole.empty() && whole.front() != '#') return true;
     at_ = end + 1;
   }
-  row_line_ = line_;
-  used_ = 0;
-  while (true) {
-    if (separator_ == ' ') {
-      while (!at_line_end() && is_blank(text_[at_])) ++at_;
-      if (at_line_end() && used_ > 0) break;
-    }
-    if (used_ == fields_.size()) fields_.emplace_back();
-    read_field(fields_[used_++]);
-    if (at_line_end()) break;
-    ++at_;
-  }
-  if (at_ < text_.size() && text_[at_] == '\r') ++at_;
-  if (at_ < text_.size() && text_[at_] == '\n') ++at_;
-  ++line_;
-  return true;
 }
 
 }  // namespace scree

@@ -127,6 +127,33 @@ std::string ScenarioError::text() const {
                            : fmt::format("{}: {}", file, message));
 }
 
+std::string why_not_set(const std::string& text, const fs::path& asset_dir) {
+  std::vector<ScenarioError> errors;
+  const auto tree = override_tree(text, errors);
+  if (!tree) return errors.front().message;
+  Scenario any;
+  std::vector<std::string_view> types;
+  for (const Field& field : scenario_keys(any))
+    if (const auto* experiment = std::get_if<OneOf>(&field.target)) types = experiment->names;
+  const Place elsewhere{std::make_shared<const std::string>(), 0, 0};
+  std::string first, closest;
+  for (const std::string_view type : types) {
+    Scenario scenario;
+    ReadNotes notes;
+    auto root = parse_yaml(fmt::format("experiment: {{type: {}}}", type), elsewhere, notes.errors);
+    merge_yaml(*root, *tree);
+    read_keys(*root, scenario, asset_dir, true, notes);
+    const auto error = std::find_if(notes.errors.begin(), notes.errors.end(),
+                                    [](const ScenarioError& e) { return e.file.starts_with("--set "); });
+    if (error == notes.errors.end()) return "";
+    const std::string& why = error->message;
+    if (first.empty()) first = why;
+    const bool has_key = !why.starts_with("unknown key") && !why.starts_with("key ");
+    if (closest.empty() && (has_key || why.find("did you mean") != std::string::npos)) closest = why;
+  }
+  return closest.empty() ? first : closest;
+}
+
 ScenarioResult load_scenario(const fs::path& file, const std::vector<std::string>& overrides,
                              const fs::path& asset_dir, ReadFor use) {
   ScenarioResult result;

@@ -45,4 +45,8 @@ void find_bullet_settings(Scenario& scenario, const std::filesystem::path& asset
 /// The whole scenario as YAML (scenario_write.cpp).
 std::string write_scenario(Scenario scenario, const std::filesystem::path& asset_dir);
 
+/// What is wrong with "key=value" in every type of experiment; empty if some type has the key and takes the
+/// value.
+std::string why_not_set(const std::string& text, const std::filesystem::path& asset_dir);
+
 }  // namespace scree

@@ -37,6 +37,23 @@ class DiagnoseCli : public testing::Test {
   fs::path folder;
 };
 
+TEST_F(DiagnoseCli, TheModelFileOfTheManualIsOne) {
+  std::istringstream manual(slurp(fs::path(SCREE_SOURCE_DIR) / "docs/diagnose.md"));
+  std::string model;
+  bool there = false;
+  for (std::string line; std::getline(manual, line);) {
+    if (line.starts_with("#")) there = line == "## The model file";
+    if (there && line.starts_with("    ")) model += line.substr(4) + "\n";
+  }
+  const std::string scenario = "../drop_test.yaml";
+  const auto at = model.find(scenario);
+  ASSERT_NE(at, std::string::npos) << model;
+  put("manual.yaml", model.replace(at, scenario.size(), SCREE_SOURCE_DIR "/scenarios/drop_test.yaml"));
+  const Called said = call("validate " + (folder / "manual.yaml").string());
+  EXPECT_EQ(said.code, 0) << said.text;
+  EXPECT_THAT(said.text, HasSubstr("ok: model, parameters material.mu, material.mu_r"));
+}
+
 TEST_F(DiagnoseCli, ASpreadsheetIsRead) {
   // Semicolons, decimal commas, millimetres, kilograms, columns of others.
   const Called plan = planned(

@@ -52,8 +52,8 @@ class FormulaSimulator {
                               -30 * mu + 6 * cohesion + twisting - 6 * rolling - 9 * hidden,
                               5 * mu + 3 * twisting + 5 * rolling + 9 * hidden,
                               3 * cohesion * cohesion - 2 * twisting - 4 * rolling + 5 * hidden};
-      const char* names[] = {"half_coverage_deg", "chi_ring1",  "chi_ring2",
-                             "chi_ring3",         "profile_25", "spread_95"};
+      const char* names[] = {"half_coverage_deg", "d50_rel_ring1", "d50_rel_ring2",
+                             "d50_rel_ring3",     "profile_25",    "spread_95"};
       if (scenario["effects"] && scenario["effects"].size() == 2)
         (cohesion > 0 && twisting > 0 ? with_both : with_two_others).insert(request.scenario);
       if (request.seed > 700'000 && scenario["effects"] && !scenario["effects"][fits_fail_with])
@@ -89,15 +89,15 @@ class Session : public testing::Test {
     folder = fs::temp_directory_path() / ("scree_session_" + std::to_string(getpid()));
     fs::create_directories(folder);
     const std::string scenarios = (fs::path(SCREE_SOURCE_DIR) / "scenarios").string();
-    write_text_file(
-        folder / "model.yaml",
-        "parameters:\n  material.mu: {nominal: 0.25, from: 0.15, to: 0.35}\n"
-        "ties: {material.mu_r: material.mu}\n"
-        "effects: [cohesion, twisting, rolling_by_size, restitution]\n"
-        "experiments:\n  heap:\n    scenario: " +
-            scenarios +
-            "/repose_lab_coarse.yaml\n    set: {experiment.mass_kg: 40}\n"
-            "    observables: [half_coverage_deg, chi_ring1, chi_ring2, chi_ring3, profile_25, spread_95]\n");
+    write_text_file(folder / "model.yaml",
+                    "parameters:\n  material.mu: {nominal: 0.25, from: 0.15, to: 0.35}\n"
+                    "ties: {material.mu_r: material.mu}\n"
+                    "effects: [cohesion, twisting, rolling_by_size, restitution]\n"
+                    "experiments:\n  heap:\n    scenario: " +
+                        scenarios +
+                        "/repose_lab_coarse.yaml\n    set: {experiment.mass_kg: 40}\n"
+                        "    observables: [half_coverage_deg, d50_rel_ring1, d50_rel_ring2, d50_rel_ring3, "
+                        "profile_25, spread_95]\n");
     auto loaded = load_model(folder / "model.yaml", kAssets);
     ASSERT_TRUE(loaded.errors.empty()) << loaded.errors.front().text();
     model = loaded.model;
@@ -336,13 +336,13 @@ TEST_F(Session, TwinsRepeatWhatGivesNoMeasurement) {
     const auto hidden = [&](const std::vector<RunRequest>& requests) {
       auto results = formula(requests);
       for (std::size_t k = 0; k < requests.size(); ++k) {
-        if (requests[k].seed % every == 0) results[k]->outputs.erase("chi_ring2");
+        if (requests[k].seed % every == 0) results[k]->outputs.erase("d50_rel_ring2");
         asked += requests[k].seed < 1'500'000'000 ? 1 : 0;  // others tell how strong the effect is
       }
       return results;
     };
     const Twin twin = make_twin(model, {{"cohesion"}, 4, 10, 0.5, 3, ""}, kAssets, std::ref(formula), hidden);
-    EXPECT_EQ(twin.data.experiments.front().observables.at("chi_ring2").n, 10);
+    EXPECT_EQ(twin.data.experiments.front().observables.at("d50_rel_ring2").n, 10);
     return asked;
   };
   EXPECT_GT(with_failures(4), 10);

@@ -1,0 +1,13 @@
+#pragma once
+// Measured values that cannot be, as far as the scenario tells.
+#include "cli/ensemble/dataset_file.h"
+
+namespace scree {
+
+/// Errors, each with the line of its row: D_x of a part of the pile that fall with rising x (of those 20 %
+/// and more apart), |chi| above 5, angles beyond 90 degrees, more mass in a section than is dumped, a rebound
+/// above the drop. A D_x outside the grading by more than a factor of 1.5 becomes a note. `file`: the
+/// observables'.
+void check_bounds(const std::filesystem::path& file, Dataset& dataset, std::vector<ScenarioError>& errors);
+
+}  // namespace scree
