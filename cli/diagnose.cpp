@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <set>
 
+#include "analysis/diagnose/fitted_parameters.h"
 #include "analysis/diagnose/outcome.h"
+#include "analysis/diagnose/words.h"
 #include "cli/commands.h"
 #include "cli/ensemble/diagnosis_session.h"
 #include "cli/ensemble/scenario_patch.h"
@@ -74,15 +76,18 @@ void print_plan(const scree::DiagnosisSession& session, const scree::ResultsStor
 // The fitted model, as a scenario of every experiment.
 void write_patches(const scree::DiagnosisSession& session, const scree::DiagnosisModel& model,
                    const scree::DiagnosisOutcome& outcome, const fs::path& out) {
-  const auto& fitted = outcome.augmented ? outcome.augmented : outcome.calibrated;
-  if (!fitted) return;
+  const scree::SimulatedModel* fitted = scree::handed_over(outcome);
+  if (fitted == nullptr) return;
+  std::vector<std::string> comment{
+      outcome.augmented ? "The fitted model with the effect that was named." : "The re-calibrated model.",
+      "Values as simulated in full; the answer says the middles of the intervals:"};
+  for (const std::string& value : scree::simulated_in_words(outcome)) comment.push_back("  " + value);
   for (const scree::Dataset::Experiment& experiment : session.data().experiments) {
     const fs::path file = out / (experiment.name + ".yaml");
     scree::write_text_file(
-        file, scree::scenario_patch(experiment.file, out,
-                                    scree::overrides_at(model, session.space(), experiment, fitted->at),
-                                    {outcome.augmented ? "The fitted model with the effect that was named."
-                                                       : "The re-calibrated model."}));
+        file,
+        scree::scenario_patch(experiment.file, out,
+                              scree::overrides_at(model, session.space(), experiment, fitted->at), comment));
     fmt::print("scenario: {}\n", file.string());
   }
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnose/fitted_parameters.h"
 #include "analysis/report/report_text.h"
 
 namespace scree {
@@ -16,11 +17,6 @@ constexpr double kOutsideTwo = 0.0455;  // share of a normal distribution beyond
 std::string p_compared(double p) {
   const std::string text = p_text(p);
   return text.starts_with('<') ? text : "= " + text;
-}
-
-// The last part of a key: bond_number.
-std::string short_key(const std::string& key) {
-  return key.substr(key.rfind('.') + 1);
 }
 
 std::string base_in_words(const ModelSpace& space, const Judgement& judgement) {
@@ -130,6 +126,17 @@ std::string answer(const DiagnosisOutcome& o) {
   return "";
 }
 
+// What the values said are, and what was simulated instead of them.
+std::string handed_over_in_words(const DiagnosisOutcome& o) {
+  std::string values;
+  for (const FittedParameter& p : handed_over_parameters(o))
+    values += fmt::format("{}{} {}", values.empty() ? "" : ", ", p.label, number_text(*p.simulated));
+  return fmt::format(
+      "Values with an interval are its middle, in brackets 90 % of the probability. Simulated in full, and "
+      "written to the scenarios, is {}: {}.",
+      o.augmented ? "of the models tried the nearest to the data" : "the re-calibrated model", values);
+}
+
 // How far the numbers are off, counted.
 std::string counted(const DiagnosisOutcome& o) {
   const Diagnosis& d = o.diagnosis;
@@ -180,18 +187,31 @@ std::string name_of(const ModelSpace& space, const Hypothesis& hypothesis) {
   return text;
 }
 
+std::string label_of(const CandidateEffect& effect, std::size_t axis) {
+  const std::string& key = effect.axes[axis].key;
+  return effect.name + key.substr(key.rfind('.'));
+}
+
 std::string values_in_words(const ModelSpace& space, const Judgement& judgement) {
   std::string text;
   for (std::size_t k = 0; k < judgement.hypothesis.effects.size(); ++k) {
     const CandidateEffect& effect = space.effects[judgement.hypothesis.effects[k]];
     for (std::size_t a = 0; a < effect.axes.size(); ++a) {
       const Judgement::Interval& i = judgement.effects[k][a];
-      text += fmt::format("{}{}.{} {} ({} to {})", text.empty() ? "" : ", ", effect.name,
-                          short_key(effect.axes[a].key), number_text(i.middle), number_text(i.low),
-                          number_text(i.high));
+      text += fmt::format("{}{} {} ({} to {})", text.empty() ? "" : ", ", label_of(effect, a),
+                          number_text(i.middle), number_text(i.low), number_text(i.high));
     }
   }
   return text;
+}
+
+std::vector<std::string> simulated_in_words(const DiagnosisOutcome& o) {
+  std::vector<std::string> all;
+  for (const FittedParameter& p : handed_over_parameters(o))
+    all.push_back(fmt::format("{} {} (middle of its interval {}, {} to {})", p.label,
+                              number_text(*p.simulated), number_text(p.within.middle),
+                              number_text(p.within.low), number_text(p.within.high)));
+  return all;
 }
 
 std::string gap_in_words(const Gap& gap) {
@@ -199,7 +219,10 @@ std::string gap_in_words(const Gap& gap) {
 }
 
 std::vector<std::string> diagnosis_in_words(const DiagnosisOutcome& o) {
-  std::vector<std::string> lines{answer(o), counted(o), tested(o)};
+  std::vector<std::string> lines{answer(o)};
+  if (handed_over(o) != nullptr) lines.push_back(handed_over_in_words(o));
+  lines.push_back(counted(o));
+  lines.push_back(tested(o));
   if (o.held_out_calibrated && o.held_out_augmented)
     lines.push_back(fmt::format(
         "Left out of the fit in turn and foretold ({}): with re-calibration alone chi-square {} on {}, with "
