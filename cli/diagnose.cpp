@@ -1,7 +1,9 @@
 // scree diagnose: where simulation and measurement disagree, and which effect the model lacks.
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <set>
 
 #include "analysis/diagnose/fitted_parameters.h"
@@ -14,6 +16,7 @@
 #include "cli/option_values.h"
 #include "cli/output_folder.h"
 #include "cli/progress.h"
+#include "cli/run_folder.h"
 #include "cli/run_through.h"
 #include "sim/io/text_file.h"
 #include "sim/material/input_bytes.h"
@@ -92,6 +95,21 @@ void write_patches(const scree::DiagnosisSession& session, const scree::Diagnosi
   }
 }
 
+scree::DiagnosisOrigin origin_of(const DiagnoseOptions& options, const scree::DiagnosisModel& model,
+                                 const std::vector<scree::Dataset>& datasets) {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  const auto whole = [](const fs::path& file) { return fs::absolute(file).lexically_normal(); };
+  scree::DiagnosisOrigin origin{model.title,
+                                whole(options.model),
+                                {},
+                                program_version(),
+                                fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(now)),
+                                command_line()};
+  for (std::size_t k = 0; k < datasets.size(); ++k)
+    origin.data.push_back({datasets[k].title, datasets[k].source, whole(options.datasets[k])});
+  return origin;
+}
+
 }  // namespace
 
 int run_diagnose(const DiagnoseOptions& options) {
@@ -118,6 +136,7 @@ int run_diagnose(const DiagnoseOptions& options) {
                  scree::suggestion(name, loaded.model.effects), scree::join(loaded.model.effects));
       return kBadInput;
     }
+  const scree::DiagnosisOrigin origin = origin_of(options, loaded.model, datasets);
   scree::DiagnosisSession session(loaded.model, scree::join_datasets(datasets), options.without, asset_dir(),
                                   cores_or(options.ensemble.jobs));
   if (!options.plan && !options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
@@ -138,7 +157,7 @@ int run_diagnose(const DiagnoseOptions& options) {
   if (!prepare_folder(out, options.force)) return kBadInput;
   for (const std::string& line : scree::diagnosis_in_words(outcome)) fmt::print("{}\n", line);
   for (const std::string& note : outcome.notes) fmt::print("note: {}\n", note);
-  scree::write_diagnosis(loaded.model.title, outcome, out);
+  scree::write_diagnosis(origin, outcome, out);
   write_patches(session, loaded.model, outcome, out);
   fmt::print("report: {}\n", (out / "report.html").string());
   return kOk;

@@ -18,7 +18,7 @@ std::string values_in_words(const ModelSpace& space, const Judgement& judgement)
 /// 0.59 (middle of its interval 0.62, 0.51 to 0.78)" of every parameter, base parameters first; empty if
 /// nothing was.
 std::vector<std::string> simulated_in_words(const DiagnosisOutcome& outcome);
-/// "chi-square 25.1 on 22 degrees of freedom, p 0.29".
+/// "chi-square 25.1 on 22, p = 0.290"; that there is no test where there is none.
 std::string gap_in_words(const Gap& gap);
 
 }  // namespace scree
