@@ -141,5 +141,8 @@ int run_study(const StudyOptions& options);
 /// The project's assets folder.
 std::filesystem::path asset_dir();
 
+/// The command as it was given, as a shell takes it.
+std::string command_line();
+
 /// Set by Ctrl-C; a run looks at it and ends cleanly.
 extern volatile std::sig_atomic_t interrupted;

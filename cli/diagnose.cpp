@@ -1,10 +1,14 @@
 // scree diagnose: where simulation and measurement disagree, and which effect the model lacks.
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <set>
 
+#include "analysis/diagnose/fitted_parameters.h"
 #include "analysis/diagnose/outcome.h"
+#include "analysis/diagnose/words.h"
 #include "cli/commands.h"
 #include "cli/ensemble/diagnosis_session.h"
 #include "cli/ensemble/scenario_patch.h"
@@ -12,6 +16,7 @@
 #include "cli/option_values.h"
 #include "cli/output_folder.h"
 #include "cli/progress.h"
+#include "cli/run_folder.h"
 #include "cli/run_through.h"
 #include "sim/io/text_file.h"
 #include "sim/material/input_bytes.h"
@@ -74,17 +79,35 @@ void print_plan(const scree::DiagnosisSession& session, const scree::ResultsStor
 // The fitted model, as a scenario of every experiment.
 void write_patches(const scree::DiagnosisSession& session, const scree::DiagnosisModel& model,
                    const scree::DiagnosisOutcome& outcome, const fs::path& out) {
-  const auto& fitted = outcome.augmented ? outcome.augmented : outcome.calibrated;
-  if (!fitted) return;
+  const scree::SimulatedModel* fitted = scree::handed_over(outcome);
+  if (fitted == nullptr) return;
+  std::vector<std::string> comment{
+      outcome.augmented ? "The fitted model with the effect that was named." : "The re-calibrated model.",
+      "Values as simulated in full; the answer says the middles of the intervals:"};
+  for (const std::string& value : scree::simulated_in_words(outcome)) comment.push_back("  " + value);
   for (const scree::Dataset::Experiment& experiment : session.data().experiments) {
     const fs::path file = out / (experiment.name + ".yaml");
     scree::write_text_file(
-        file, scree::scenario_patch(experiment.file, out,
-                                    scree::overrides_at(model, session.space(), experiment, fitted->at),
-                                    {outcome.augmented ? "The fitted model with the effect that was named."
-                                                       : "The re-calibrated model."}));
+        file,
+        scree::scenario_patch(experiment.file, out,
+                              scree::overrides_at(model, session.space(), experiment, fitted->at), comment));
     fmt::print("scenario: {}\n", file.string());
   }
+}
+
+scree::DiagnosisOrigin origin_of(const DiagnoseOptions& options, const scree::DiagnosisModel& model,
+                                 const std::vector<scree::Dataset>& datasets) {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  const auto whole = [](const fs::path& file) { return fs::absolute(file).lexically_normal(); };
+  scree::DiagnosisOrigin origin{model.title,
+                                whole(options.model),
+                                {},
+                                program_version(),
+                                fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(now)),
+                                command_line()};
+  for (std::size_t k = 0; k < datasets.size(); ++k)
+    origin.data.push_back({datasets[k].title, datasets[k].source, whole(options.datasets[k])});
+  return origin;
 }
 
 }  // namespace
@@ -110,6 +133,7 @@ int run_diagnose(const DiagnoseOptions& options) {
                  scree::suggestion(name, loaded.model.effects), scree::join(loaded.model.effects));
       return kBadInput;
     }
+  const scree::DiagnosisOrigin origin = origin_of(options, loaded.model, datasets);
   scree::DiagnosisSession session(loaded.model, scree::join_datasets(datasets), options.without, asset_dir(),
                                   cores_or(options.ensemble.jobs));
   if (!options.plan && !options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
@@ -130,7 +154,7 @@ int run_diagnose(const DiagnoseOptions& options) {
   if (!prepare_folder(out, options.force)) return kBadInput;
   for (const std::string& line : scree::diagnosis_in_words(outcome)) fmt::print("{}\n", line);
   for (const std::string& note : outcome.notes) fmt::print("note: {}\n", note);
-  scree::write_diagnosis(loaded.model.title, outcome, out);
+  scree::write_diagnosis(origin, outcome, out);
   write_patches(session, loaded.model, outcome, out);
   fmt::print("report: {}\n", (out / "report.html").string());
   return kOk;

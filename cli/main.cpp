@@ -7,6 +7,8 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
@@ -23,6 +25,8 @@ void on_interrupt(int signal) {
   if (interrupted == signal) _exit(kInterrupted);
   interrupted = signal;
 }
+
+std::vector<std::string> arguments;  // without the program
 
 constexpr const char* kExamples = R"(
 Examples:
@@ -58,7 +62,24 @@ fs::path asset_dir() {
   return fs::path(SCREE_SOURCE_DIR) / "assets";
 }
 
+std::string command_line() {
+  constexpr const char* kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-+=:,/@%";
+  std::string text = "scree";
+  for (const std::string& argument : arguments) {
+    text += ' ';
+    if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) {
+      text += argument;
+      continue;
+    }
+    text += '\'';
+    for (const char c : argument) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    text += '\'';
+  }
+  return text;
+}
+
 int main(int argc, char** argv) {
+  arguments = {argv + 1, argv + argc};
   CLI::App app{"scree simulates how mine waste rock segregates when it is dumped.", "scree"};
   app.footer(kExamples);
   app.require_subcommand(1);

@@ -40,7 +40,7 @@ double p_of(double chi2, int freedom, double scatter_freedom) {
 
 Gap gap_of(double chi2, int numbers, int fitted, double scatter_freedom) {
   const int freedom = std::max(numbers - fitted, 1);
-  return {chi2, freedom, p_of(chi2, freedom, scatter_freedom)};
+  return {chi2, freedom, p_of(chi2, freedom, scatter_freedom), numbers > fitted};
 }
 
 // Chi-square and logarithm of the density, Student's t of several dimensions or normal; log_shape: without

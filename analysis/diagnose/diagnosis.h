@@ -24,8 +24,11 @@ inline constexpr double kFalseDiscoveries = 0.1;  ///< expected share of false a
 /// Distance of a model from the data.
 struct Gap {
   double chi2 = 0;
-  int freedom = 0;  ///< numbers less what was fitted
+  int freedom = 0;  ///< numbers less what was fitted, 1 at least
   double p = 1;     ///< probability of as much by chance (Fisher's F)
+  /// More numbers than parameters were fitted to. Without, `p` is that of one degree of freedom: the rules
+  /// above use it, but it is no test of the fit.
+  bool is_test = true;
 };
 
 /// Where the nominal model disagrees: one number, or several together.

@@ -30,6 +30,18 @@ struct DiagnosisOutcome {
   std::vector<std::string> notes;
 };
 
+/// What a diagnosis was made of, for whoever reads its report.
+struct DiagnosisOrigin {
+  struct Data {
+    std::string title, source;  ///< as the dataset says; the source may be empty
+    std::filesystem::path file;
+  };
+  std::string title;  ///< of the model
+  std::filesystem::path model;
+  std::vector<Data> data;
+  std::string program, date, command;  ///< version; UTC; as given
+};
+
 /// Measured less simulated, over its standard deviation, of a measured value.
 double standard_residual(const Diagnosis& diagnosis, const SimulatedModel& model, Eigen::Index value);
 
@@ -40,7 +52,7 @@ std::vector<std::string> diagnosis_in_words(const DiagnosisOutcome& outcome);
 std::vector<std::pair<std::string, double>> values_at(const ModelSpace& space, const ModelPoint& point);
 
 /// Writes report.html and diagnosis.json into a folder that is there. Throws std::runtime_error.
-void write_diagnosis(const std::string& title, const DiagnosisOutcome& outcome,
+void write_diagnosis(const DiagnosisOrigin& origin, const DiagnosisOutcome& outcome,
                      const std::filesystem::path& folder);
 
 }  // namespace scree

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnose/fitted_parameters.h"
 #include "analysis/report/report_text.h"
 
 namespace scree {
@@ -12,15 +13,17 @@ namespace {
 
 constexpr double kOutsideTwo = 0.0455;  // share of a normal distribution beyond two standard deviations
 
-// "= 0.013", "< 0.001"
-std::string p_compared(double p) {
-  const std::string text = p_text(p);
-  return text.starts_with('<') ? text : "= " + text;
+// "p = 0.013", "p < 0.001", "no test"
+std::string p_in_words(const Gap& gap) {
+  if (!gap.is_test) return "no test";
+  const std::string text = p_text(gap.p);
+  return text.starts_with('<') ? "p " + text : "p = " + text;
 }
 
-// The last part of a key: bond_number.
-std::string short_key(const std::string& key) {
-  return key.substr(key.rfind('.') + 1);
+// Of what full simulations refuted the gap is theirs.
+std::string gap_of_judgement(const Judgement& j) {
+  return gap_in_words(j.gap) +
+         (j.simulated == Judgement::Simulated::refuted ? " (by full simulations, which refute it)" : "");
 }
 
 std::string base_in_words(const ModelSpace& space, const Judgement& judgement) {
@@ -75,8 +78,8 @@ std::string unknown_in_words(const ModelSpace& space, const Diagnosis& d) {
     if (!j.hypothesis.is_effect() || !j.explains()) continue;
     if (rivals.empty()) most = j.probability;
     if (j.probability * kApartBy <= most) break;
-    rivals += fmt::format("{}{} (p {}, probability {})", rivals.empty() ? "" : "; ",
-                          name_of(space, j.hypothesis), p_compared(j.gap.p), number_text(j.probability, 2));
+    rivals += fmt::format("{}{} ({}, probability {})", rivals.empty() ? "" : "; ",
+                          name_of(space, j.hypothesis), p_in_words(j.gap), number_text(j.probability, 2));
   }
   if (!rivals.empty())
     return fmt::format(
@@ -100,9 +103,9 @@ std::string answer(const DiagnosisOutcome& o) {
     case Kind::calibration:
       if (d.calibration.gap.p <= kFitsAbove)
         return fmt::format(
-            "No effect can be named: other parameters leave more than chance often does (p = {:.2g}), but "
+            "No effect can be named: other parameters leave more than chance often does ({}), but "
             "nothing else is {:g} times as probable as they are. More repeats would tell. {}.",
-            d.calibration.gap.p, kApartBy, base_in_words(o.space, d.calibration));
+            p_in_words(d.calibration.gap), kApartBy, base_in_words(o.space, d.calibration));
       return fmt::format("No effect needs to be added: other parameters explain the {} numbers. {}.",
                          d.measured.values.size(), base_in_words(o.space, d.calibration));
     case Kind::unknown:
@@ -130,6 +133,38 @@ std::string answer(const DiagnosisOutcome& o) {
   return "";
 }
 
+// What the values said are, and what was simulated instead of them.
+std::string handed_over_in_words(const DiagnosisOutcome& o) {
+  std::string values;
+  for (const FittedParameter& p : handed_over_parameters(o))
+    values += fmt::format("{}{} {}", values.empty() ? "" : ", ", p.label, number_text(*p.simulated));
+  return fmt::format(
+      "Values with an interval are its middle, in brackets 90 % of the probability. Simulated in full, and "
+      "written to the scenarios, is {}: {}.",
+      o.augmented ? "of the models tried the nearest to the data" : "the re-calibrated model", values);
+}
+
+// Base parameters that lie at an end of their range; empty without any.
+std::string at_ends_in_words(const DiagnosisOutcome& o) {
+  const Diagnosis& d = o.diagnosis;
+  std::string text;
+  const auto add = [&](const char* what, const Judgement& judgement,
+                       const std::optional<SimulatedModel>& simulated) {
+    for (const FittedParameter& p : fitted_parameters(o.space, judgement, simulated ? &*simulated : nullptr))
+      if (p.at_end && !p.of_effect)
+        text += fmt::format("{}{} {} {} ({} to {})", text.empty() ? "" : "; ", what, p.label,
+                            number_text(p.fit), number_text(p.low), number_text(p.high));
+  };
+  if (d.verdict.kind == DiagnosisVerdict::Kind::nothing) return text;
+  add("re-calibrated", d.calibration, o.calibrated);
+  if (!d.verdict.named.empty())
+    add("with what was found", d.judgements[d.verdict.named.front()], o.augmented);
+  return text.empty()
+             ? text
+             : fmt::format("At the end of its range: {}. Widen it in the model file if rock may be so.",
+                           text);
+}
+
 // How far the numbers are off, counted.
 std::string counted(const DiagnosisOutcome& o) {
   const Diagnosis& d = o.diagnosis;
@@ -146,27 +181,37 @@ std::string counted(const DiagnosisOutcome& o) {
                                : ". Chance alone leaves none.");
 }
 
-// The tests behind it.
+// The tests behind it, by the surfaces.
 std::string tested(const DiagnosisOutcome& o) {
   const Diagnosis& d = o.diagnosis;
   using Kind = DiagnosisVerdict::Kind;
-  std::string text = "Gap of the model as it is: " + gap_in_words(d.nominal);
+  std::string text = "Gap by the fitted surfaces: as it is " + gap_in_words(d.nominal);
   if (d.verdict.kind == Kind::nothing) return text + ".";
-  text += "; with its best parameters: " + gap_in_words(d.calibration.gap);
+  text += "; best parameters " + gap_of_judgement(d.calibration);
   if (d.verdict.kind == Kind::unknown) {
     for (const Judgement& j : d.judgements)
       if (j.hypothesis.is_effect())
-        return text + fmt::format("; with the best of the effects, {}: {}.", name_of(o.space, j.hypothesis),
-                                  gap_in_words(j.gap));
+        return text + fmt::format("; with the most probable of the effects, {}, {}.",
+                                  name_of(o.space, j.hypothesis), gap_of_judgement(j));
     return text + ".";
   }
   if (d.verdict.kind == Kind::calibration) return text + ".";
   const Judgement& first = d.judgements[d.verdict.named.front()];
-  text += fmt::format("; with {}: {}", name_of(o.space, first.hypothesis), gap_in_words(first.gap));
+  return text + fmt::format("; with {} {}.", name_of(o.space, first.hypothesis), gap_of_judgement(first));
+}
+
+// The same by simulations; empty without any.
+std::string simulated_gaps(const DiagnosisOutcome& o) {
+  std::string text;
+  const auto add = [&](const std::string& what, const SimulatedModel& m) {
+    text += fmt::format("{}{} {} ({} seeds)", text.empty() ? "" : "; ", what, gap_in_words(m.gap), m.runs);
+  };
+  if (o.nominal.runs > 0) add("as it is", o.nominal);
+  if (o.calibrated) add("best parameters", *o.calibrated);
   if (o.augmented)
-    text += fmt::format(", by {} full simulations of each experiment with fresh seeds {}", o.augmented->runs,
-                        gap_in_words(o.augmented->gap));
-  return text + ".";
+    add("with " + name_of(o.space, o.diagnosis.judgements[o.diagnosis.verdict.named.front()].hypothesis),
+        *o.augmented);
+  return text.empty() ? text : fmt::format("Gap by full simulations, all numbers free: {}.", text);
 }
 
 }  // namespace
@@ -180,26 +225,46 @@ std::string name_of(const ModelSpace& space, const Hypothesis& hypothesis) {
   return text;
 }
 
+std::string label_of(const CandidateEffect& effect, std::size_t axis) {
+  const std::string& key = effect.axes[axis].key;
+  return effect.name + key.substr(key.rfind('.'));
+}
+
 std::string values_in_words(const ModelSpace& space, const Judgement& judgement) {
   std::string text;
   for (std::size_t k = 0; k < judgement.hypothesis.effects.size(); ++k) {
     const CandidateEffect& effect = space.effects[judgement.hypothesis.effects[k]];
     for (std::size_t a = 0; a < effect.axes.size(); ++a) {
       const Judgement::Interval& i = judgement.effects[k][a];
-      text += fmt::format("{}{}.{} {} ({} to {})", text.empty() ? "" : ", ", effect.name,
-                          short_key(effect.axes[a].key), number_text(i.middle), number_text(i.low),
-                          number_text(i.high));
+      text += fmt::format("{}{} {} ({} to {})", text.empty() ? "" : ", ", label_of(effect, a),
+                          number_text(i.middle), number_text(i.low), number_text(i.high));
     }
   }
   return text;
 }
 
+std::vector<std::string> simulated_in_words(const DiagnosisOutcome& o) {
+  std::vector<std::string> all;
+  for (const FittedParameter& p : handed_over_parameters(o))
+    all.push_back(fmt::format("{} {} (middle of its interval {}, {} to {})", p.label,
+                              number_text(*p.simulated), number_text(p.within.middle),
+                              number_text(p.within.low), number_text(p.within.high)));
+  return all;
+}
+
 std::string gap_in_words(const Gap& gap) {
-  return fmt::format("chi-square {} on {}, p {}", number_text(gap.chi2), gap.freedom, p_compared(gap.p));
+  if (!gap.is_test)
+    return fmt::format("chi-square {} with as many parameters as numbers: no test", number_text(gap.chi2));
+  return fmt::format("chi-square {} on {}, {}", number_text(gap.chi2), gap.freedom, p_in_words(gap));
 }
 
 std::vector<std::string> diagnosis_in_words(const DiagnosisOutcome& o) {
-  std::vector<std::string> lines{answer(o), counted(o), tested(o)};
+  std::vector<std::string> lines{answer(o)};
+  if (handed_over(o) != nullptr) lines.push_back(handed_over_in_words(o));
+  if (const std::string ends = at_ends_in_words(o); !ends.empty()) lines.push_back(ends);
+  lines.push_back(counted(o));
+  lines.push_back(tested(o));
+  if (const std::string gaps = simulated_gaps(o); !gaps.empty()) lines.push_back(gaps);
   if (o.held_out_calibrated && o.held_out_augmented)
     lines.push_back(fmt::format(
         "Left out of the fit in turn and foretold ({}): with re-calibration alone chi-square {} on {}, with "

@@ -368,6 +368,7 @@ TEST(Verdict, NamesNothingThatIsLessProbableThanCalibration) {
 TEST_F(DiagnosisOf, UnknownIsSaidWithTheEffectsThatWouldDo) {
   DiagnosisOutcome o;
   o.space = world.space;
+  o.space.base.clear();  // the judgements below have no fits
   o.diagnosis.measured = world.measure(SyntheticWorld::point(0.1, 0.1), 5, 3);
   o.diagnosis.covariance = Eigen::MatrixXd::Identity(11, 11);
   o.nominal.mean = o.diagnosis.measured.vector();
