@@ -33,7 +33,7 @@ std::vector<scree::StudyOption> options_of(const scree::Study& study,
 int run_study(const StudyOptions& options) {
   if (!is_of_kind(options.file, scree::FileKind::study)) return kBadInput;
   const scree::StudyResult loaded = scree::load_study(options.file, asset_dir());
-  if (!nothing_wrong(loaded.errors)) return kBadInput;
+  if (!nothing_wrong(loaded.errors, loaded.warnings)) return kBadInput;
   const scree::Study& study = loaded.study;
   const std::string& by = options.rank_by.empty() ? study.rank_by : options.rank_by;
   const scree::StudyCriterion* criterion = scree::study_criterion(by);
@@ -58,7 +58,7 @@ int run_study(const StudyOptions& options) {
   }
   const fs::path out = options.out.empty() ? free_run_folder(study.sweep.name) : options.out;
   if (!prepare_folder(out, options.force)) return kBadInput;
-  scree::write_study(study.sweep.name, study.currency, ranked, *criterion, out);
+  scree::write_study(study.sweep.name, study.currency, ranked, *criterion, loaded.warnings, out);
   fmt::print("report: {}\n", (out / "report.html").string());
   return progress.failed > 0 ? kFailed : kOk;
 }

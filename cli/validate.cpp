@@ -73,7 +73,7 @@ int validate_calibration(const std::filesystem::path& file) {
 
 int validate_study(const std::filesystem::path& file) {
   const scree::StudyResult loaded = scree::load_study(file, asset_dir());
-  if (!nothing_wrong(loaded.errors)) return kBadInput;
+  if (!nothing_wrong(loaded.errors, loaded.warnings)) return kBadInput;
   fmt::print("{}: ok: study of {} options, ranked by {}\n", file.string(), loaded.study.options.size(),
              loaded.study.rank_by);
   return kOk;

@@ -52,7 +52,7 @@ const std::vector<StudyCriterion>& study_criteria() {
       {"lateral_chi_std", "deviation of χ across the slope", lateral},
       {"inside_ksat_contrast", "hydraulic conductivity by grading inside, 90th over 10th percentile",
        [](const Outputs& seed) { return number(seed, "inside_ksat_contrast"); }},
-      {"largest_at_toe", "share of the coarsest tenth in the lowest sixth",
+      {"largest_at_toe", "share of the coarsest tenth that reaches the lowest sixth",
        [](const Outputs& seed) { return number(seed, "largest_at_toe"); }},
   };
   return criteria;
@@ -70,12 +70,13 @@ std::vector<StudyRank> rank_options(const std::vector<StudyOption>& options,
   std::vector<StudyRank> ranks;
   for (std::size_t k = 0; k < options.size(); ++k) {
     const MeanStd value = spread(options[k], criterion);
-    if (value.n > 0) ranks.push_back({k, 1, value, 1});
+    if (value.n > 0) ranks.push_back({k, value.n > 1 ? std::optional(1) : std::nullopt, value, 1});
   }
-  std::stable_sort(ranks.begin(), ranks.end(),
-                   [](const StudyRank& a, const StudyRank& b) { return a.value.mean < b.value.mean; });
+  std::stable_sort(ranks.begin(), ranks.end(), [](const StudyRank& a, const StudyRank& b) {
+    return a.rank.has_value() != b.rank.has_value() ? a.rank.has_value() : a.value.mean < b.value.mean;
+  });
   std::size_t best = 0;
-  for (std::size_t k = 1; k < ranks.size(); ++k) {
+  for (std::size_t k = 1; k < ranks.size() && ranks[k].rank; ++k) {
     const Welch test = welch(ranks[k].value, ranks[best].value);
     ranks[k].p = test.p;
     ranks[k].rank = ranks[best].rank;
@@ -95,11 +96,14 @@ std::vector<std::string> study_in_words(const std::vector<StudyOption>& options,
     if (!option.runs.complete()) lines.push_back(runs_in_words(option.name, option.runs));
   const std::vector<StudyRank> ranks = rank_options(options, criterion);
   for (const StudyRank& rank : ranks) {
+    if (!rank.rank) {
+      lines.push_back(fmt::format("{}: {:.3g} ({})", options[rank.option].name, rank.value.mean, kNotRanked));
+      continue;
+    }
     const auto sharing = std::count_if(ranks.begin(), ranks.end(),
                                        [&](const StudyRank& other) { return other.rank == rank.rank; });
-    lines.push_back(fmt::format("{}. {}: {:.3g}{}{}", rank.rank, options[rank.option].name, rank.value.mean,
-                                rank.value.n > 1 ? fmt::format(" +- {:.2g}", rank.value.std) : "",
-                                sharing > 1 ? " (tie)" : ""));
+    lines.push_back(fmt::format("{}. {}: {:.3g} +- {:.2g}{}", *rank.rank, options[rank.option].name,
+                                rank.value.mean, rank.value.std, sharing > 1 ? " (tie)" : ""));
   }
   return lines;
 }

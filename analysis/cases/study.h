@@ -32,25 +32,29 @@ const StudyCriterion* study_criterion(const std::string& name);
 
 /// An option's place.
 struct StudyRank {
-  std::size_t option = 0;  ///< its index
-  int rank = 1;            ///< options with the same rank are a tie
+  std::size_t option = 0;       ///< its index
+  std::optional<int> rank = 1;  ///< options with the same rank are a tie; none: not ranked
   MeanStd value;
   double p = 1;  ///< two-sided, against the best of its rank (Welch); 1 for that one itself
 };
 
 /// Options by rising mean of the criterion; those without a value are left out. An option whose difference to
-/// the best of the present rank is within the scatter of seeds (p >= 0.05, or fewer than two seeds) shares
-/// its rank.
+/// the best of the present rank is within the scatter of seeds (p >= 0.05) shares its rank. The scatter of
+/// one with a single seed is not known: it is not ranked, and stands behind the others.
 std::vector<StudyRank> rank_options(const std::vector<StudyOption>& options, const StudyCriterion& criterion);
 
 /// The answer in words, a line each.
 std::vector<std::string> study_in_words(const std::vector<StudyOption>& options,
                                         const StudyCriterion& criterion);
 
-/// Writes folder/report.html. Throws std::runtime_error when gnuplot is missing or fails or a file cannot be
-/// written.
+/// Why an option has no rank.
+inline constexpr const char* kNotRanked =
+    "not ranked: one seed, its scatter is not known; give seeds: [1, 2, 3]";
+
+/// Writes folder/report.html; `warnings`: of the study. Throws std::runtime_error when gnuplot is missing or
+/// fails or a file cannot be written.
 void write_study(const std::string& title, const std::string& currency,
                  const std::vector<StudyOption>& options, const StudyCriterion& criterion,
-                 const std::filesystem::path& folder);
+                 const std::vector<std::string>& warnings, const std::filesystem::path& folder);
 
 }  // namespace scree

@@ -18,9 +18,9 @@ std::string ranking(const std::vector<StudyOption>& options, const StudyCriterio
     const StudyOption& option = options[rank.option];
     rows += fmt::format(
         "<tr><td>{}</td><td class=\"word\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-        rank.rank, html_escaped(option.name), value_cell("", rank.value, ""),
-        rank.p < 1 ? decimals_text(rank.p, 2) : "–", number_text(option.tonnes_per_load),
-        option.cost_per_t ? number_text(*option.cost_per_t) : "–");
+        rank.rank ? std::to_string(*rank.rank) : kNotRanked, html_escaped(option.name),
+        value_cell("", rank.value, ""), rank.p < 1 ? decimals_text(rank.p, 2) : "–",
+        number_text(option.tonnes_per_load), option.cost_per_t ? number_text(*option.cost_per_t) : "–");
   }
   return fmt::format(
       "<div class=\"wide\"><table><thead><tr><th>Rank</th><th class=\"word\">Option</th><th>{}</th><th>p "
@@ -42,9 +42,11 @@ std::string other_criteria(const std::vector<StudyOption>& options, const StudyC
     for (const auto& ranks : all) {
       const auto found =
           std::find_if(ranks.begin(), ranks.end(), [&](const StudyRank& rank) { return rank.option == k; });
-      rows += found == ranks.end() ? "<td>–</td>"
-                                   : fmt::format("<td>{} <small>rank {}</small></td>",
-                                                 value_cell("", found->value, ""), found->rank);
+      rows +=
+          found == ranks.end()
+              ? "<td>–</td>"
+              : fmt::format("<td>{} <small>{}</small></td>", value_cell("", found->value, ""),
+                            found->rank ? fmt::format("rank {}", *found->rank) : std::string("not ranked"));
     }
     rows += "</tr>\n";
   }
@@ -82,7 +84,7 @@ Picture draw_profiles(const std::vector<StudyOption>& options, const std::filesy
 
 void write_study(const std::string& title, const std::string& currency,
                  const std::vector<StudyOption>& options, const StudyCriterion& criterion,
-                 const std::filesystem::path& folder) {
+                 const std::vector<std::string>& warnings, const std::filesystem::path& folder) {
   const std::filesystem::path pictures = folder / "pictures";
   std::filesystem::create_directories(pictures);
   std::string body =
@@ -90,6 +92,8 @@ void write_study(const std::string& title, const std::string& currency,
       "within the scatter of seeds (Welch's t test, p of 0.05 and more).</p>\n<ul>\n";
   for (const std::string& line : study_in_words(options, criterion))
     body += fmt::format("<li>{}</li>\n", html_escaped(line));
+  for (const std::string& warning : warnings)
+    body += fmt::format("<li>Warning: {}</li>\n", html_escaped(warning));
   body += "</ul>\n" + ranking(options, criterion, currency) + other_criteria(options, criterion);
   if (std::any_of(options.begin(), options.end(),
                   [](const StudyOption& each) { return !each.runs.seeds.empty(); }))

@@ -67,6 +67,34 @@ void read_option(const YamlNode& option, const fs::path& file, const fs::path& a
   study.sweep.points.push_back({{text}, "", std::move(loaded.scenario)});
 }
 
+// "end dumping 10, push dumping 20" of a number, if options differ in it.
+template <class Number>
+std::string differences(const Study& study, const Number& number) {
+  std::string text;
+  bool differ = false;
+  for (const SweepPoint& point : study.sweep.points) {
+    differ = differ || number(point.scenario) != number(study.sweep.points.front().scenario);
+    text += fmt::format("{}{} {:g}", text.empty() ? "" : ", ", point.values.front(), number(point.scenario));
+  }
+  return differ ? text : "";
+}
+
+std::vector<std::string> warnings_of(const Study& study) {
+  std::vector<std::string> warnings;
+  for (const SweepPoint& point : study.sweep.points)
+    if (point.scenario.seeds.size() < 2)
+      warnings.push_back(fmt::format("option '{}': {}", point.values.front(), kNotRanked));
+  if (const std::string each =
+          differences(study, [](const Scenario& s) { return static_cast<double>(s.output.sections); });
+      !each.empty())
+    warnings.push_back("options differ in output.sections, and their numbers are not alike: " + each);
+  if (const std::string each = differences(study, [](const Scenario& s) { return bench_of(s)->height; });
+      !each.empty())
+    warnings.push_back("options differ in the height of the bench (m), and their numbers are not alike: " +
+                       each);
+  return warnings;
+}
+
 }  // namespace
 
 StudyResult load_study(const fs::path& file, const fs::path& asset_dir) {
@@ -101,6 +129,7 @@ StudyResult load_study(const fs::path& file, const fs::path& asset_dir) {
         read_option(option, file, asset_dir, seeds, study, reader);
     }
   if (reader.good() && study.options.size() < 2) reader.fail(root->place, "options: at least two are needed");
+  if (reader.good()) result.warnings = warnings_of(study);
   return result;
 }
 

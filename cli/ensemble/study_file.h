@@ -26,6 +26,7 @@ struct Study {
 struct StudyResult {
   Study study;
   std::vector<ScenarioError> errors;
+  std::vector<std::string> warnings;  ///< a line each: options that cannot be ranked, or are not alike
 };
 
 /// Reads a study file:

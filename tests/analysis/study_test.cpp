@@ -51,9 +51,20 @@ TEST(Study, DifferencesWithinTheScatterAreTies) {
               testing::Contains(testing::HasSubstr("1. good: 1 +- 0.1 (tie)")));
 }
 
-TEST(Study, OneSeedDecidesNothing) {
-  const auto ranks = rank_options({option("a", {-0.1}), option("b", {-2.0})}, *study_criterion("chi_range"));
-  EXPECT_EQ(ranks[1].rank, 1);
+TEST(Study, OneSeedIsNotRanked) {
+  const std::vector<StudyOption> options{option("one", {-0.1}), option("two", {-2.0, -2.1}),
+                                         option("three", {-1.0, -1.1})};
+  const auto ranks = rank_options(options, *study_criterion("chi_range"));
+  ASSERT_EQ(ranks.size(), 3u);
+  EXPECT_EQ(options[ranks[0].option].name, "three");
+  EXPECT_EQ(ranks[0].rank, 1);
+  EXPECT_EQ(ranks[1].rank, 2);
+  EXPECT_EQ(options[ranks[2].option].name, "one") << "behind the others, though its value is the least";
+  EXPECT_FALSE(ranks[2].rank.has_value());
+  EXPECT_THAT(
+      study_in_words(options, *study_criterion("chi_range")),
+      testing::Contains("one: 0.6 (not ranked: one seed, its scatter is not known; give seeds: [1, 2, "
+                        "3])"));
 }
 
 TEST(Study, RatiosAreToeOverCrest) {

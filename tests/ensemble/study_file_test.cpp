@@ -47,6 +47,21 @@ TEST_F(StudyFile, OptionsHaveTheirCosts) {
   EXPECT_NEAR(r.study.options[1].cost_per_t.value(), (40 + 300 * 40.0 / 3600) / 300, 1e-12);
 }
 
+TEST_F(StudyFile, WhatCannotBeComparedIsWarnedOf) {
+  const auto warnings = [&](const std::string& set, const std::string& head) {
+    const StudyResult r = load(a1 + "}\n" + d2 + set + "}\n", head);
+    EXPECT_TRUE(r.errors.empty()) << r.errors.front().text();
+    return r.warnings;
+  };
+  EXPECT_THAT(warnings("", "seeds: [1, 2]\n"), testing::IsEmpty());
+  EXPECT_THAT(warnings("", "seeds: [1]\n"),
+              testing::ElementsAre(HasSubstr("option 'a': not ranked: one seed"), HasSubstr("option 'b'")));
+  EXPECT_THAT(warnings(", set: {output.sections: 5}", "seeds: [1, 2]\n"),
+              testing::ElementsAre(HasSubstr("output.sections, and their numbers are not alike: a 6, b 5")));
+  EXPECT_THAT(warnings(", set: {experiment.bench.height_m: 12}", "seeds: [1, 2]\n"),
+              testing::ElementsAre(HasSubstr("height of the bench (m)")));
+}
+
 TEST_F(StudyFile, WrongOnesAreNamed) {
   EXPECT_THAT(first_error(a1 + "}\n"), HasSubstr("options: at least two are needed"));
   EXPECT_THAT(first_error(a1 + "}\n" + a1 + "}\n"), HasSubstr("name: 'a' is there twice"));
