@@ -28,7 +28,7 @@ double share_reaching_toe_above(const std::vector<Grain>& pile, double crest_hei
   for (const Grain& grain : pile) {
     if (!(grain.diameter > diameter)) continue;
     coarse += grain.mass;
-    if (grain.position.z() - grain.diameter / 2 <= crest_height / 6) at_toe += grain.mass;
+    if (grain.position.z() <= crest_height / 6) at_toe += grain.mass;
   }
   return coarse > 0 ? at_toe / coarse : std::numeric_limits<double>::quiet_NaN();
 }

@@ -7,12 +7,10 @@
 namespace scree {
 
 /// Of the mass of the blocks larger than the diameter that `quantile` (0 to 1) of the original's mass passes,
-/// the share that reaches into the lowest sixth of the slope by height, the floor before the toe included:
-/// its lowest point lies at or below crest_height / 6. The centre of a block on the floor lies a radius high,
-/// above that where blocks are larger than a third of the bench, so that centres would count none. Blocks
-/// above the crest count among the mass. `original`: every grain as dumped. NaN when the pile has no such
-/// block. Throws std::invalid_argument when `original` is empty, the quantile lies outside 0 to 1 or the
-/// crest height (m) is not above 0.
+/// the share that lies in the lowest sixth of the slope by height (centre at or below crest_height / 6, the
+/// floor before the toe included). Blocks above the crest count among the mass. `original`: every grain as
+/// dumped. NaN when the pile has no such block. Throws std::invalid_argument when `original` is empty, the
+/// quantile lies outside 0 to 1 or the crest height (m) is not above 0.
 double share_reaching_toe(const std::vector<Grain>& pile, double crest_height,
                           const std::vector<Grain>& original, double quantile = 0.9);
 

@@ -108,7 +108,7 @@ std::string inside_table(const RunResult& result) {
     const char *name, *words, *unit;
   };
   static constexpr Row kRows[] = {
-      {"largest_at_toe", "share of the coarsest tenth that reaches into the lowest sixth of the slope", ""},
+      {"largest_at_toe", "share of the coarsest tenth that lies in the lowest sixth of the slope", ""},
       {"inside_mean_abs_chi", "mean |χ| over the cells of the section", ""},
       {"inside_ksat_contrast", "hydraulic conductivity by grading, 90th over 10th percentile of the cells",
        ""},
