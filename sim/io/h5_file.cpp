@@ -1,6 +1,7 @@
 #include "sim/io/h5_file.h"
 
 #include <algorithm>
+#include <memory>
 #include <system_error>
 
 #include "sim/io/h5_undo_driver.h"
@@ -42,6 +43,12 @@ H5File::Shape after(hsize_t first, const H5File::Shape& row) {
 }
 
 }  // namespace
+
+void ask_for_memory() {
+  constexpr std::size_t kNeeded = 16 << 20;
+  const auto some = std::make_unique_for_overwrite<char[]>(kNeeded);
+  *static_cast<volatile char*>(some.get()) = 0;
+}
 
 QuietHdf5::QuietHdf5() {
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);

@@ -32,6 +32,10 @@ class H5Handle {
   herr_t (*close_)(hid_t) = nullptr;
 };
 
+/// HDF5 crashes or ends the program where it finds no memory in the middle of its work: what it may need is
+/// asked for before. Throws std::bad_alloc.
+void ask_for_memory();
+
 /// Keeps HDF5 from printing its error stack while it lives; what it says is thrown instead.
 class QuietHdf5 {
  public:

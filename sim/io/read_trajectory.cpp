@@ -105,6 +105,7 @@ std::vector<Grain> base_of(const Trajectory& trajectory) {
 }  // namespace
 
 RawSnapshot read_trajectory_frame(const std::filesystem::path& file, std::optional<int> frame) {
+  ask_for_memory();
   const QuietHdf5 quiet;
   const Trajectory trajectory(file);
   constexpr const char* kPlaces = "/particles/rock/position/value";

@@ -316,6 +316,7 @@ struct TrajectoryWriter::Files {
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& h5_file, const std::vector<Grain>& all,
                                    const std::vector<Grain>& base, const TrajectoryInfo& info) {
   if (all.empty()) throw std::invalid_argument("trajectory: there are no grains");
+  ask_for_memory();
   const QuietHdf5 quiet;
   files_ = std::make_unique<Files>(h5_file, all, base, info);
 }
@@ -327,12 +328,14 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& h5_file, const s
   } catch (const std::system_error& error) {
     fail_to_write(h5_file, error.code().message());
   }
+  ask_for_memory();
   const QuietHdf5 quiet;
   files_ = std::make_unique<Files>(h5_file, all, state);
 }
 
 void TrajectoryWriter::save(StateWriter& state) {
   if (!files_) throw std::runtime_error("trajectory: saved after close");
+  ask_for_memory();
   const QuietHdf5 quiet;
   files_->save(state);
 }
@@ -348,6 +351,7 @@ TrajectoryWriter::~TrajectoryWriter() {
 
 void TrajectoryWriter::write(const Snapshot& snapshot, std::int64_t step) {
   if (!files_) throw std::runtime_error("trajectory: written to after close");
+  ask_for_memory();
   const QuietHdf5 quiet;
   files_->write_h5(snapshot, step);
   files_->times.push_back(snapshot.time);
@@ -357,6 +361,7 @@ void TrajectoryWriter::write(const Snapshot& snapshot, std::int64_t step) {
 
 void TrajectoryWriter::close() {
   if (!files_) return;
+  ask_for_memory();
   const QuietHdf5 quiet;
   const std::unique_ptr<Files> files = std::move(files_);
   frames_ = static_cast<std::int64_t>(files->times.size());
