@@ -83,7 +83,7 @@ EnergyTerms energy_terms(const EnergyBalance& balance) {
           balance.put_in(),
           balance.error(),
           balance.relative_error(),
-          std::abs(balance.relative_error()) <= kMostEnergyError};
+          closes(balance)};
 }
 
 }  // namespace

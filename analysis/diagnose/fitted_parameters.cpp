@@ -56,6 +56,16 @@ std::vector<FittedParameter> fitted_parameters(const ModelSpace& space, const Ju
   return all;
 }
 
+std::vector<FittedModel> fitted_models(const DiagnosisOutcome& o) {
+  const Diagnosis& d = o.diagnosis;
+  std::vector<FittedModel> all{
+      {"re-calibrated", fitted_parameters(o.space, d.calibration, o.calibrated ? &*o.calibrated : nullptr)}};
+  if (!d.verdict.named.empty())
+    all.push_back({"with what was found", fitted_parameters(o.space, d.judgements[d.verdict.named.front()],
+                                                            o.augmented ? &*o.augmented : nullptr)});
+  return all;
+}
+
 const SimulatedModel* handed_over(const DiagnosisOutcome& o) {
   return o.augmented ? &*o.augmented : o.calibrated ? &*o.calibrated : nullptr;
 }

@@ -29,6 +29,14 @@ inline constexpr double kAtEnd = 0.02;
 std::vector<FittedParameter> fitted_parameters(const ModelSpace& space, const Judgement& judgement,
                                                const SimulatedModel* simulated);
 
+/// A model whose parameters are shown.
+struct FittedModel {
+  const char* name;
+  std::vector<FittedParameter> parameters;
+};
+/// The re-calibrated one, and the one with what was named.
+std::vector<FittedModel> fitted_models(const DiagnosisOutcome& outcome);
+
 /// The model that an outcome's scenarios hold: what was named, else the re-calibrated one; null without any.
 const SimulatedModel* handed_over(const DiagnosisOutcome& outcome);
 /// Its parameters; empty without any.

@@ -101,21 +101,6 @@ Json json_of(const DiagnosisOrigin& origin) {
   return json;
 }
 
-// Models whose parameters are shown.
-struct FittedModel {
-  const char* name;
-  std::vector<FittedParameter> parameters;
-};
-std::vector<FittedModel> fitted_models(const DiagnosisOutcome& o) {
-  const Diagnosis& d = o.diagnosis;
-  std::vector<FittedModel> all{
-      {"re-calibrated", fitted_parameters(o.space, d.calibration, o.calibrated ? &*o.calibrated : nullptr)}};
-  if (!d.verdict.named.empty())
-    all.push_back({"with what was found", fitted_parameters(o.space, d.judgements[d.verdict.named.front()],
-                                                            o.augmented ? &*o.augmented : nullptr)});
-  return all;
-}
-
 Json json_of(const std::vector<FittedParameter>& parameters) {
   Json json;
   for (const FittedParameter& p : parameters) {

@@ -146,19 +146,13 @@ std::string handed_over_in_words(const DiagnosisOutcome& o) {
 
 // Base parameters that lie at an end of their range; empty without any.
 std::string at_ends_in_words(const DiagnosisOutcome& o) {
-  const Diagnosis& d = o.diagnosis;
   std::string text;
-  const auto add = [&](const char* what, const Judgement& judgement,
-                       const std::optional<SimulatedModel>& simulated) {
-    for (const FittedParameter& p : fitted_parameters(o.space, judgement, simulated ? &*simulated : nullptr))
+  if (o.diagnosis.verdict.kind == DiagnosisVerdict::Kind::nothing) return text;
+  for (const FittedModel& model : fitted_models(o))
+    for (const FittedParameter& p : model.parameters)
       if (p.at_end && !p.of_effect)
-        text += fmt::format("{}{} {} {} ({} to {})", text.empty() ? "" : "; ", what, p.label,
+        text += fmt::format("{}{} {} {} ({} to {})", text.empty() ? "" : "; ", model.name, p.label,
                             number_text(p.fit), number_text(p.low), number_text(p.high));
-  };
-  if (d.verdict.kind == DiagnosisVerdict::Kind::nothing) return text;
-  add("re-calibrated", d.calibration, o.calibrated);
-  if (!d.verdict.named.empty())
-    add("with what was found", d.judgements[d.verdict.named.front()], o.augmented);
   return text.empty()
              ? text
              : fmt::format("At the end of its range: {}. Widen it in the model file if rock may be so.",

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <map>
-#include <sstream>
 #include <stdexcept>
 
 #include "analysis/results/outputs.h"
@@ -44,7 +44,7 @@ std::optional<std::uint64_t> seed_in(const std::string& text) {
 
 // Throws if the first line of a table says that it is of another sweep.
 void check_sweep(const Sweep& sweep, const fs::path& file) {
-  std::istringstream in(read_input_text(file));
+  std::ifstream in(file);
   std::string line;
   std::getline(in, line);
   if (!line.empty() && line.back() == '\r') line.pop_back();
@@ -172,8 +172,8 @@ void write_sweep_csv(const Sweep& sweep, const std::vector<PointResults>& points
 }
 
 std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const fs::path& file, bool refuse_others) {
-  check_sweep(sweep, file);
   DelimitedTable table(file);
+  check_sweep(sweep, file);
   check_columns(sweep, table);
   std::vector<PointResults> points;
   for (const SweepPoint& point : sweep.points)

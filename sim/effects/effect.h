@@ -48,6 +48,8 @@ struct EffectContext {
   double surface_energy(double bond_number) const;
   /// Weight of a grain of D50, N.
   double weight() const;
+  /// A pull of `bond_number` times that weight: "12 N, or 8 kPa over", to be followed by the section.
+  std::string pull_in_words(double bond_number) const;
 };
 
 /// What of a scenario decides whether an effect changes anything in it.

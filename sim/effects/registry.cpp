@@ -33,6 +33,12 @@ double EffectContext::weight() const {
   return density * std::numbers::pi / 6 * d50 * d50 * d50 * gravity;
 }
 
+std::string EffectContext::pull_in_words(double bond_number) const {
+  const double force = bond_number * weight();
+  return fmt::format("{:.4g} N, or {:.3g} kPa over", force,
+                     force / (std::numbers::pi / 4 * d50 * d50) / 1000);
+}
+
 std::string why_inert(const Effect& effect, const EffectScene& scene) {
   const auto& types = effect.experiments;
   if (!types.empty() && std::find(types.begin(), types.end(), scene.experiment) == types.end())

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "sim/effects/registry.h"
 
 namespace scree {
@@ -36,12 +34,8 @@ Effect sticky_tools() {
           },
       .in_units =
           [](std::span<const double> v, const EffectContext& context) {
-            const double force = v[0] * context.weight();
-            return fmt::format(
-                "gamma {:.4g} J/m2, a tool pulls a grain of {:.3g} m with {:.4g} N, or {:.3g} kPa over its "
-                "section",
-                0.5 * context.surface_energy(v[0]), context.d50, force,
-                force / (std::numbers::pi / 4 * context.d50 * context.d50) / 1000);
+            return fmt::format("gamma {:.4g} J/m2, a tool pulls a grain of {:.3g} m with {} its section",
+                               0.5 * context.surface_energy(v[0]), context.d50, context.pull_in_words(v[0]));
           },
   };
 }

@@ -6,6 +6,10 @@
 
 namespace scree {
 
+bool closes(const EnergyBalance& balance) {
+  return std::abs(balance.relative_error()) <= kMostEnergyError;
+}
+
 std::vector<std::string> watch_failures(const RunOutcome& outcome) {
   std::vector<std::string> failures;
   double mass = outcome.statistics.lost_mass;
@@ -21,7 +25,7 @@ std::vector<std::string> watch_failures(const RunOutcome& outcome) {
   if (outcome.energy) {
     const double error = outcome.energy->relative_error();
     // Energy that is missing may have gone with the rock that left; energy out of nothing has not.
-    if (!(std::abs(error) <= kMostEnergyError) && !(leaks && error > 0))  // nor for NaN
+    if (!closes(*outcome.energy) && !(leaks && error > 0))
       failures.push_back(
           fmt::format("the energy balance is open by {:+.2f} % of what was put in, more than {:.0f} %: lower "
                       "numerics.time_step_safety",

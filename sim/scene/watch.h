@@ -17,6 +17,9 @@ namespace scree {
 inline constexpr double kMostEnergyError = 0.01;  ///< of the energy that was put in
 inline constexpr double kMostLost = 0.01;         ///< of the mass that was put in
 
+/// Whether a balance is closed well enough for the run to count; not for NaN.
+bool closes(const EnergyBalance& balance);
+
 /// What is wrong with a run, a line each; empty for one that counts.
 std::vector<std::string> watch_failures(const RunOutcome& outcome);
 
