@@ -42,8 +42,9 @@ class Ensemble {
       const auto known = store_.find(run->key);
       const bool failed = known && known->state == RunState::failed && !settings_.again;
       if (failed) ++progress_.failed;
-      if (known && known->state == RunState::done) ++progress_.done;
-      return failed || (known && known->state == RunState::done);
+      const bool done = known && known->state == RunState::done;
+      if (done) known_done(run->key);
+      return failed || done;
     });
     std::error_code none;  // of one that was interrupted or killed
     for (const auto& entry : fs::directory_iterator(piles_folder(), none))
@@ -102,6 +103,12 @@ class Ensemble {
     fs::remove_all(folder_of(key), ignored);
   }
 
+  // Its result is in the store; a program killed right after it was put there has left the folder.
+  void known_done(const std::string& key) {
+    ++progress_.done;
+    forget_folder(key);
+  }
+
   // Whether a run of this key, killed or interrupted, got as far as a checkpoint.
   bool has_checkpoint(const std::string& key) const {
     std::error_code none;
@@ -122,7 +129,7 @@ class Ensemble {
       waiting_.erase(next);
       switch (store_.claim(run, settings_.version, settings_.again && !tried_.contains(run.key))) {
         case Claim::done:
-          ++progress_.done;
+          known_done(run.key);
           break;
         case Claim::failed:
           ++progress_.failed;

@@ -73,6 +73,20 @@ TEST_F(Runs, AllComeIntoTheStoreOnce) {
   EXPECT_EQ(begun().size(), 6u) << "a repeated sweep costs nothing";
 }
 
+// A program can be killed between a result's way into the store and the end of its folder.
+TEST_F(Runs, FolderOfOneThatIsInTheStoreIsTakenAway) {
+  ResultsStore store(folder / "store.sqlite");
+  const fs::path left = folder / "store.sqlite.work" / "key3" / "run";
+  const auto run = [&] {
+    LocalProcesses processes(2, 5, program(""));
+    return run_ensemble(requests, store, processes, {"1", false}, go_on).ended_here;
+  };
+  EXPECT_EQ(run(), 6u);
+  fs::create_directories(left);
+  EXPECT_EQ(run(), 0u);
+  EXPECT_FALSE(fs::exists(folder / "store.sqlite.work"));
+}
+
 // What is left of a sweep does not leave cores idle.
 TEST_F(Runs, FewerThanPlacesGetMoreThreads) {
   ResultsStore store(folder / "store.sqlite");
