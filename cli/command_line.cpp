@@ -237,7 +237,7 @@ Command analyse_command(CLI::App& all) {
       ->allow_extra_args(false);
   app->add_option("--relative-uncertainty", analyse.relative_uncertainty,
                   "Standard uncertainty of a value with one repeat, as a share of it")
-      ->check(within(1e-6, 1e3));
+      ->check(within(1e-6, 1));
   app->footer(
       "\nExamples:\n  scree analyse heap1.csv heap2.csv heap3.csv --scenario scenarios/repose_lab.yaml --out "
       "measured\n"
@@ -391,7 +391,7 @@ Command image_command(CLI::App& all) {
                   "Scenario that simulates the slope: writes a dataset, and the bias on top of it");
   app->add_option("--relative-uncertainty", image.relative_uncertainty,
                   "Standard uncertainty in the dataset of values from one photograph, as a share of them")
-      ->check(within(1e-6, 1e3));
+      ->check(within(1e-6, 1));
   app->add_option("--out", image.out, "Folder for the results; default: a free runs/image");
   add_force_flag(app, image.force);
   app->footer(

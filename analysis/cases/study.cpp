@@ -52,7 +52,7 @@ const std::vector<StudyCriterion>& study_criteria() {
       {"lateral_chi_std", "deviation of χ across the slope", lateral},
       {"inside_ksat_contrast", "hydraulic conductivity by grading inside, 90th over 10th percentile",
        [](const Outputs& seed) { return number(seed, "inside_ksat_contrast"); }},
-      {"largest_at_toe", "share of the coarsest tenth that reaches the lowest sixth",
+      {"largest_at_toe", "share of the coarsest tenth in the lowest sixth",
        [](const Outputs& seed) { return number(seed, "largest_at_toe"); }},
   };
   return criteria;

@@ -8,14 +8,12 @@ namespace scree {
 namespace {
 
 // `absent`: the value at which an effect does nothing; an end of the range there is none to look beyond.
-bool at_an_end(const FittedParameter& p, std::optional<double> absent) {
+std::optional<double> at_an_end(const FittedParameter& p, std::optional<double> absent) {
   const double near = kAtEnd * std::abs(p.high - p.low);
-  for (const double end : {p.low, p.high}) {
-    if (absent && std::abs(*absent - end) <= near) continue;
-    for (const double value : {p.within.middle, p.fit, p.simulated.value_or(p.fit)})
-      if (std::abs(value - end) <= near) return true;
-  }
-  return false;
+  for (const double value : {p.fit, p.within.middle, p.simulated.value_or(p.fit)})
+    for (const double end : {p.low, p.high})
+      if (!(absent && std::abs(*absent - end) <= near) && std::abs(value - end) <= near) return value;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -63,6 +61,8 @@ std::vector<FittedModel> fitted_models(const DiagnosisOutcome& o) {
   if (!d.verdict.named.empty())
     all.push_back({"with what was found", fitted_parameters(o.space, d.judgements[d.verdict.named.front()],
                                                             o.augmented ? &*o.augmented : nullptr)});
+  if (d.verdict.kind == DiagnosisVerdict::Kind::nothing)
+    for (FittedParameter& p : all.front().parameters) p.at_end.reset();
   return all;
 }
 

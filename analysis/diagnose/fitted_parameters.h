@@ -18,9 +18,9 @@ struct FittedParameter {
   double fit = 0;                   ///< most likely, by the fitted surfaces
   std::optional<double> simulated;  ///< by the full simulations that are shown
   bool of_effect = false;
-  /// The median, the fit or what was simulated lies within kAtEnd of the range's width from an end of it,
-  /// that at which an effect does nothing left out.
-  bool at_end = false;
+  /// The fit, the median or what was simulated, the first of them that lies within kAtEnd of the range's
+  /// width from an end of it, that at which an effect does nothing left out.
+  std::optional<double> at_end;
 };
 
 inline constexpr double kAtEnd = 0.02;
@@ -34,7 +34,8 @@ struct FittedModel {
   const char* name;
   std::vector<FittedParameter> parameters;
 };
-/// The re-calibrated one, and the one with what was named.
+/// The re-calibrated one, and the one with what was named. Where nothing is missing nothing needs to be
+/// re-calibrated, and no parameter is marked as at its end.
 std::vector<FittedModel> fitted_models(const DiagnosisOutcome& outcome);
 
 /// The model that an outcome's scenarios hold: what was named, else the re-calibrated one; null without any.

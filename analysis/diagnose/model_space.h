@@ -64,6 +64,7 @@ struct ModelPoint {
 struct ModelSpace {
   std::vector<BaseAxis> base;
   std::vector<CandidateEffect> effects;
+  std::vector<std::string> left_out = {};  ///< effects that are not looked for: "hoist: why"
 
   /// Largest difference of a coordinate, for amplitudes of that and of how far along they are; infinite
   /// between models of different effects. Amplitudes below a hundredth of the range are all the same.

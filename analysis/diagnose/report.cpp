@@ -23,7 +23,7 @@ constexpr double kAlike = 0.8;         // cosine from which on other pairs are s
 // `by`: surfaces or simulations.
 Json json_of(const Gap& gap, const char* by) {
   Json json{{"by", by}, {"chi2", gap.chi2}, {"freedom", gap.is_test ? gap.freedom : 0}, {"p", gap.p}};
-  if (!gap.is_test) json["p"] = nullptr;  // as many parameters as numbers: no test
+  if (!gap.is_test) json["p"] = nullptr;  // no more numbers than parameters: no test
   return json;
 }
 
@@ -110,7 +110,7 @@ Json json_of(const std::vector<FittedParameter>& parameters) {
     each["interval"] = json_of(p.within);
     each["fit"] = p.fit;
     if (p.simulated) each["simulated"] = *p.simulated;
-    each["at_end_of_range"] = p.at_end;
+    each["at_end_of_range"] = p.at_end.has_value();
   }
   return json;
 }
@@ -258,7 +258,7 @@ std::string parameters_table(const DiagnosisOutcome& o) {
 // "11.2 on 9" and p in two cells.
 std::string gap_cells(const Gap& gap) {
   if (!gap.is_test)
-    return fmt::format("<td>{}</td><td>as many parameters as numbers: no test</td>", number_text(gap.chi2));
+    return fmt::format("<td>{}</td><td>no more numbers than parameters: no test</td>", number_text(gap.chi2));
   return fmt::format("<td>{} on {}</td><td>{}</td>", number_text(gap.chi2), gap.freedom, p_text(gap.p));
 }
 

@@ -69,8 +69,9 @@ std::string title_of(const ModelSpace& space, const Hypothesis& hypothesis) {
 // What is unknown, and the effects whose fits would explain the data but are less probable.
 std::string unknown_in_words(const ModelSpace& space, const Diagnosis& d) {
   const auto& all = d.judgements;
-  const std::string missing =
-      fmt::format("Something is missing that is not among the {} effects looked for", space.effects.size());
+  if (space.effects.empty()) return "Something is missing, and no effect was looked for.";
+  const std::string missing = fmt::format("Something is missing that is not among the {} looked for",
+                                          counted_text(space.effects.size(), "effect"));
   std::string rivals;
   double unknown = 0, most = 0;  // probabilities; judgements stand by falling ones
   for (const Judgement& j : all) {
@@ -98,16 +99,17 @@ std::string answer(const DiagnosisOutcome& o) {
   switch (d.verdict.kind) {
     case Kind::nothing:
       return fmt::format(
-          "Nothing is missing that these {} numbers could show: the model as it is agrees with them.",
-          d.measured.values.size());
+          "Nothing is missing that {} could show: the model as it is agrees with what was measured.",
+          counted_text(d.measured.values.size(), "number"));
     case Kind::calibration:
       if (d.calibration.gap.p <= kFitsAbove)
         return fmt::format(
             "No effect can be named: other parameters leave more than chance often does ({}), but "
             "nothing else is {:g} times as probable as they are. More repeats would tell. {}.",
             p_in_words(d.calibration.gap), kApartBy, base_in_words(o.space, d.calibration));
-      return fmt::format("No effect needs to be added: other parameters explain the {} numbers. {}.",
-                         d.measured.values.size(), base_in_words(o.space, d.calibration));
+      return fmt::format("No effect needs to be added: other parameters explain the {}. {}.",
+                         counted_text(d.measured.values.size(), "number"),
+                         base_in_words(o.space, d.calibration));
     case Kind::unknown:
       return unknown_in_words(o.space, d);
     case Kind::effect: {
@@ -138,21 +140,22 @@ std::string handed_over_in_words(const DiagnosisOutcome& o) {
   std::string values;
   for (const FittedParameter& p : handed_over_parameters(o))
     values += fmt::format("{}{} {}", values.empty() ? "" : ", ", p.label, number_text(*p.simulated));
-  return fmt::format(
-      "Values with an interval are its middle, in brackets 90 % of the probability. Simulated in full, and "
-      "written to the scenarios, is {}: {}.",
-      o.augmented ? "of the models tried the nearest to the data" : "the re-calibrated model", values);
+  return fmt::format("{}Simulated in full, and written to the scenarios, is {}: {}.",
+                     o.diagnosis.verdict.kind == DiagnosisVerdict::Kind::unknown
+                         ? ""
+                         : "Values with an interval are its middle, in brackets 90 % of the probability. ",
+                     o.augmented ? "of the models tried the nearest to the data" : "the re-calibrated model",
+                     values);
 }
 
 // Base parameters that lie at an end of their range; empty without any.
 std::string at_ends_in_words(const DiagnosisOutcome& o) {
   std::string text;
-  if (o.diagnosis.verdict.kind == DiagnosisVerdict::Kind::nothing) return text;
   for (const FittedModel& model : fitted_models(o))
     for (const FittedParameter& p : model.parameters)
       if (p.at_end && !p.of_effect)
-        text += fmt::format("{}{} {} {} ({} to {})", text.empty() ? "" : "; ", model.name, p.label,
-                            number_text(p.fit), number_text(p.low), number_text(p.high));
+        text += fmt::format("{}{} {} {} of a range from {} to {}", text.empty() ? "" : "; ", model.name,
+                            p.label, number_text(*p.at_end), number_text(p.low), number_text(p.high));
   return text.empty()
              ? text
              : fmt::format("At the end of its range: {}. Widen it in the model file if rock may be so.",
@@ -163,10 +166,9 @@ std::string at_ends_in_words(const DiagnosisOutcome& o) {
 std::string counted(const DiagnosisOutcome& o) {
   const Diagnosis& d = o.diagnosis;
   const std::size_t n = d.measured.values.size();
-  std::string text = fmt::format(
-      "As it is, the model misses {} of the {} measured numbers by more than two standard "
-      "deviations",
-      outside(o, o.nominal), n);
+  std::string text =
+      fmt::format("As it is, the model misses {} of the {} by more than two standard deviations",
+                  outside(o, o.nominal), counted_text(n, "measured number"));
   if (const std::string where = largest_differences(o); !where.empty()) text += "; most of all " + where;
   if (o.calibrated) text += fmt::format(". Its best parameters leave {}", outside(o, *o.calibrated));
   if (o.augmented) text += fmt::format("; with what was found {}", outside(o, *o.augmented));
@@ -248,7 +250,7 @@ std::vector<std::string> simulated_in_words(const DiagnosisOutcome& o) {
 
 std::string gap_in_words(const Gap& gap) {
   if (!gap.is_test)
-    return fmt::format("chi-square {} with as many parameters as numbers: no test", number_text(gap.chi2));
+    return fmt::format("chi-square {} with no more numbers than parameters: no test", number_text(gap.chi2));
   return fmt::format("chi-square {} on {}, {}", number_text(gap.chi2), gap.freedom, p_in_words(gap));
 }
 

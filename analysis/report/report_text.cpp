@@ -167,6 +167,10 @@ std::string count_text(double value) {
   return text;
 }
 
+std::string counted_text(std::size_t count, std::string_view what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 std::string duration_text(double seconds) {
   if (seconds < 120) return number_text(seconds) + " s";
   if (seconds < 7200) return number_text(seconds / 60) + " min";

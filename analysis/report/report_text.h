@@ -22,6 +22,8 @@ int decimals_of(double value, int digits = 3);
 std::string decimals_text(double value, int decimals);
 /// 12 345 678 in groups of three.
 std::string count_text(double value);
+/// "1 number", "9 numbers".
+std::string counted_text(std::size_t count, std::string_view what);
 /// Seconds as "48 s", "12.5 min" or "3.4 h".
 std::string duration_text(double seconds);
 

@@ -244,6 +244,8 @@ bool is_of_the_run(const std::string& output) {
 }
 
 std::string why_not_given(const OutputScope& scope, const std::string& output) {
+  if (scope.measured && is_of_the_run(output))
+    return "says something of a run, and is not measured on a pile";
   const Given answer = given(scope, output);
   if (answer == Given::yes) return {};
   if (answer == Given::not_by_this_one)
@@ -257,6 +259,7 @@ std::string why_not_given(const OutputScope& scope, const std::string& output) {
                                                 "and the finished one, without '_dump'",
                                                 fmt::join(scope.after_dumps, ", ")));
   std::vector<std::string> names = plain_names(scope.experiment);
+  if (scope.measured) std::erase_if(names, is_of_the_run);
   if (has_sections(scope.experiment))
     for (const SectionField& field : section_fields())
       names.push_back(fmt::format("{}_{}", field.name, scope.experiment == "bucket_dump" ? "top" : "S1"));

@@ -54,6 +54,7 @@ struct OutputScope {
   std::string experiment;  ///< end_dump, push_dump, bucket_dump, repose_lift, drop_test
   int sections = 6;
   std::vector<int> further_sections, after_dumps;
+  bool measured = false;  ///< only those that can be measured on a pile (is_of_the_run)
 };
 
 /// Empty if such a scenario gives an output of this name; else a message that says what it gives.

@@ -37,18 +37,26 @@ class BoundCheck {
 
  private:
   void check(const Dataset::Observable& row) {
-    static const std::regex diameter("d([0-9]{2})_m(_.*)"), section_mass("mass_t_.*"), chi("(.*_)?chi(_.*)?");
+    static const std::regex diameter("d([0-9]{2})_m(_.*)"), mass("mass_t_.*|carried_back_t"), chi("chi_.*"),
+        signed_number("chi_.*|.*_deg|layer_coarsening_down"),
+        share(
+            "inside_porosity|largest_at_toe|chi_zero_x_over_l|mass_share_.*|share_above_1m_.*|layer_variance_"
+            ".*");
     const Known& known = known_[row.experiment];
     const auto& experiment = dataset_.experiments[row.experiment].scenario.experiment;
     std::smatch parts;
     if (std::regex_match(row.output, parts, diameter))
       check_diameter(row, std::stod(parts[1]), parts[2], known.grading);
-    if (std::regex_match(row.output, chi) && row.output != "chi_zero_x_over_l" &&
-        std::abs(row.value) > kMostChi)
+    if (std::regex_match(row.output, share)) {
+      if (row.value < 0 || row.value > 1) fail(row, "lies between 0 and 1");
+      return;
+    }
+    if (row.value < 0 && !std::regex_match(row.output, signed_number)) fail(row, "must not be below 0");
+    if (std::regex_match(row.output, chi) && std::abs(row.value) > kMostChi)
       fail(row, fmt::format("chi lies between -{0:g} and {0:g}", kMostChi));
     if (unit_of_output(row.output) == "deg" && std::abs(row.value) > 90)
       fail(row, "angles lie between -90 and 90 deg");
-    if (std::regex_match(row.output, section_mass) && row.value > known.mass_t * kRounding)
+    if (std::regex_match(row.output, mass) && row.value > known.mass_t * kRounding)
       fail(row, fmt::format("only {:g} t are dumped", known.mass_t));
     if (const auto* drop = std::get_if<DropTest>(&experiment);
         drop != nullptr && row.output == "rebound_height_m" && row.value > drop->height)
@@ -57,6 +65,7 @@ class BoundCheck {
 
   void check_diameter(const Dataset::Observable& row, double percent, const std::string& part,
                       const Grading& grading) {
+    if (row.value <= 0) return fail(row, "must be above 0");
     const double least = grading.min_diameter(), most = grading.max_diameter();
     if (row.value < least / kOutsideGrading || row.value > most * kOutsideGrading)
       dataset_.notes.push_back(fmt::format("{}:{}: {} is {:g} m, and the grading goes from {:g} to {:g} m",

@@ -51,9 +51,9 @@ std::optional<double> default_uncertainty(const YamlNode& root, FileReader& read
   const YamlEntry* entry = root.find("default_relative_uncertainty");
   if (entry == nullptr) return std::nullopt;
   const auto value = reader.number(entry->value, entry->key);
-  if (value && !(*value > 0 && *value < 1))
+  if (value && !(*value > 0 && *value <= 1))
     reader.fail(entry->value.place,
-                "default_relative_uncertainty: must be above 0 and below 1 (10 % is 0.1)");
+                "default_relative_uncertainty: must be above 0 and at most 1 (10 % is 0.1)");
   return value;
 }
 

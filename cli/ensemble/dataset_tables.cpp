@@ -79,9 +79,6 @@ class ObservableTable {
     const std::string experiment = text("experiment"), output = text("observable");
     if (experiment.empty()) table_.fail("experiment is empty");
     if (output.empty()) table_.fail("observable is empty");
-    if (is_of_the_run(output))
-      table_.fail(
-          fmt::format("observable: {} says something of a run, and is not measured on a pile", output));
     const auto& all = dataset_.experiments;
     const auto of = std::find_if(all.begin(), all.end(), [&](const auto& e) { return e.name == experiment; });
     if (of == all.end()) {
@@ -91,7 +88,7 @@ class ObservableTable {
                               suggestion(experiment, names), join(names)));
     }
     const std::string label = experiment + "/" + output;
-    if (const std::string why = why_not_given(of->scenario, output); !why.empty())
+    if (const std::string why = why_not_measured(of->scenario, output); !why.empty())
       table_.fail(fmt::format("{}: {}", label, why));
     const auto [first, fresh] = lines_.emplace(label, table_.line());
     if (!fresh) table_.fail(fmt::format("{} stands already in line {}", label, first->second));

@@ -5,22 +5,14 @@
 #include <stdexcept>
 
 #include "analysis/results/output_units.h"
+#include "cli/ensemble/file_reader.h"
 #include "sim/io/text_file.h"
+#include "sim/scene/yaml_tree.h"
 
 namespace scree {
 namespace {
 
 namespace fs = std::filesystem;
-
-// A YAML scalar in double quotes.
-std::string in_quotes(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return out + "\"";
-}
 
 std::string covariance_table(const DatasetDraft::Covariance& covariance) {
   std::string table = fmt::format("name,{}\n", fmt::join(covariance.names, ","));
@@ -58,15 +50,16 @@ std::vector<std::string> write_dataset(const DatasetDraft& draft, const fs::path
         "no observable scatters between the repeats: there is nothing to write a dataset of");
   const fs::path from = fs::absolute(folder).lexically_normal();
   std::string yaml =
-      fmt::format("title: {}\nsource: {}\nexperiments:\n", in_quotes(draft.title), in_quotes(draft.source));
+      fmt::format("title: {}\nsource: {}\nexperiments:\n", yaml_text(draft.title), yaml_text(draft.source));
   for (const DatasetDraft::Experiment& experiment : draft.experiments) {
     const fs::path scenario = fs::absolute(experiment.scenario).lexically_normal();
-    yaml += fmt::format("  {}:\n    scenario: {}\n", in_quotes(experiment.name),
-                        in_quotes(scenario.lexically_relative(from).generic_string()));
+    yaml += fmt::format("  {}:\n    scenario: {}\n", yaml_text(experiment.name),
+                        yaml_text(scenario.lexically_relative(from).generic_string()));
     if (!experiment.overrides.empty()) yaml += "    set:\n";
     for (const std::string& text : experiment.overrides) {
       const auto at = text.find('=');
-      yaml += fmt::format("      {}: {}\n", text.substr(0, at), text.substr(at + 1));
+      yaml += fmt::format("      {}: {}\n", text.substr(0, at),
+                          value_text(text.substr(at + 1), false, fs::current_path()));
     }
   }
   yaml += "observables: observables.csv\n";

@@ -16,7 +16,7 @@ struct DatasetDraft {
   struct Experiment {
     std::string name;
     std::filesystem::path scenario;
-    std::vector<std::string> overrides;  ///< "key=value"
+    std::vector<std::string> overrides;  ///< "key=value"; files are those found from the working folder
     std::map<std::string, MeanStd> observables;
   };
   /// Of the values, in the units of their outputs; its diagonal holds the squares of std / sqrt(repeats).

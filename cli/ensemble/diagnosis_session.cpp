@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "analysis/diagnose/words.h"
+#include "analysis/report/report_text.h"
 #include "analysis/results/outputs.h"
 #include "cli/ensemble/design.h"
 #include "cli/ensemble/run_request.h"
@@ -240,6 +241,12 @@ DiagnosisSession::DiagnosisSession(const DiagnosisModel& model, JoinedData data,
       asset_dir_(std::move(asset_dir)),
       threads_(threads),
       space_(space_of(model, data_.experiments, without, asset_dir_)) {
+  for (const std::string& why : space_.left_out) data_.notes.push_back("not looked for: " + why);
+  if (data_.measured.values.size() <= space_.base.size())
+    data_.notes.push_back(fmt::format(
+        "{} and {}: these alone can explain almost anything, so that no effect can be named; measure more",
+        counted_text(data_.measured.values.size(), "measured number"),
+        counted_text(space_.base.size(), "uncertain parameter")));
   design_ = in_every_experiment(design_of(space_, model.simulations));
   learnt_.resize(data_.experiments.size());
   forecasts_.resize(data_.experiments.size());
@@ -458,11 +465,6 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   DiagnosisOutcome outcome;
   outcome.space = space_;
   outcome.notes = data_.notes;
-  if (data_.measured.values.size() <= space_.base.size())
-    outcome.notes.push_back(fmt::format(
-        "{} measured numbers and {} uncertain parameters: these alone can explain almost anything, so that "
-        "no effect can be named; measure more",
-        data_.measured.values.size(), space_.base.size()));
   learn_from(design_, run, outcome);
   outcome.nominal = nominal_of_design();
   LearntModel model = learn();
@@ -509,9 +511,17 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   }
   say_what_stands(d, tried, outcome);
   outcome.nominal.gap = simulated_gap(d, model, outcome.nominal.mean, std::max(outcome.nominal.runs, 1));
-  if (const SimulatedModel* calibrated = tried.last(d.calibration)) {
-    outcome.calibrated = *calibrated;
-    outcome.calibrated->gap = tried.gap_of(*calibrated);
+  if (tried.last(d.calibration) != nullptr) {
+    try {
+      tried.simulate(d.calibration);  // rounds may have ended before it lay at its last fit
+    } catch (const TooFewRuns& error) {
+      outcome.notes.push_back(fmt::format(
+          "the re-calibrated model could not be tried by full simulations at its last fit, an earlier one is "
+          "shown: {}",
+          error.what()));
+    }
+    outcome.calibrated = *tried.last(d.calibration);
+    outcome.calibrated->gap = tried.gap_of(*outcome.calibrated);
   }
   if (const Judgement* named = named_first(d)) {
     outcome.augmented = tried.best(*named);

@@ -9,6 +9,8 @@
 
 namespace scree {
 
+namespace fs = std::filesystem;
+
 void FileReader::allow(const YamlNode& map, const std::vector<std::string>& allowed,
                        const std::string& where) {
   for (const YamlEntry& entry : map.entries)
@@ -37,8 +39,10 @@ const YamlNode* FileReader::list_at(const YamlNode& parent, const char* key, boo
     if (required) fail(parent.place, fmt::format("'{}' is missing: {}", key, what));
     return nullptr;
   }
-  if (entry->value.kind == YamlKind::sequence && !entry->value.items.empty()) return &entry->value;
-  fail(entry->value.place, fmt::format("{}: {} is expected, found {}", key, what, found(entry->value)));
+  const bool is_list = entry->value.kind == YamlKind::sequence;
+  if (is_list && !entry->value.items.empty()) return &entry->value;
+  fail(entry->value.place, fmt::format("{}: {} is expected, found {}", key, what,
+                                       is_list ? "an empty list" : found(entry->value)));
   return nullptr;
 }
 
@@ -106,9 +110,17 @@ std::vector<FileReader::Span> FileReader::spans(const YamlNode& map) {
   return spans;
 }
 
+std::string value_text(const std::string& text, bool quoted, const fs::path& folder) {
+  std::error_code none;
+  const fs::path path = fs::path(text).has_extension() ? folder / text : fs::path();
+  if (!path.empty() && fs::is_regular_file(path, none))
+    return yaml_text(fs::absolute(path).lexically_normal().string());
+  return quoted ? yaml_text(text) : text;
+}
+
 Variation read_variation(const YamlNode& root, const std::vector<std::string>& parameters,
                          FileReader& reader) {
-  Variation variation;
+  Variation variation{fs::path(*root.place.file).parent_path(), {}, {}};
   const auto is_parameter = [&](const std::string& key) {
     return std::find(parameters.begin(), parameters.end(), key) != parameters.end();
   };
@@ -118,7 +130,7 @@ Variation read_variation(const YamlNode& root, const std::vector<std::string>& p
       if (is_parameter(entry.key))
         reader.fail(entry.key_place, fmt::format("set.{}: is a parameter itself", entry.key));
       if (const auto value = reader.scalar(entry.value, "set." + entry.key))
-        variation.fixed.push_back(entry.key + "=" + *value);
+        variation.fixed.push_back(entry.key + "=" + value_text(*value, entry.value.quoted, variation.folder));
     }
   const YamlNode* ties = reader.map_at(root, "ties", false, "a map from a key to the one it follows");
   if (ties == nullptr) return variation;
@@ -140,16 +152,19 @@ Variation read_variation(const YamlNode& root, const std::vector<std::string>& p
 std::vector<std::string> overrides_of(const Variation& variation, const std::vector<std::string>& parameters,
                                       const std::vector<std::string>& values) {
   std::vector<std::string> overrides = variation.fixed;
-  for (std::size_t k = 0; k < parameters.size(); ++k) overrides.push_back(parameters[k] + "=" + values[k]);
+  const auto set = [&](const std::string& key, std::size_t parameter) {
+    overrides.push_back(key + "=" + value_text(values[parameter], false, variation.folder));
+  };
+  for (std::size_t k = 0; k < parameters.size(); ++k) set(parameters[k], k);
   for (const auto& [key, leader] : variation.ties) {
     const auto at = std::find(parameters.begin(), parameters.end(), leader) - parameters.begin();
-    overrides.push_back(key + "=" + values[static_cast<std::size_t>(at)]);
+    set(key, static_cast<std::size_t>(at));
   }
   return overrides;
 }
 
-std::optional<std::filesystem::path> scenario_at(const YamlNode& parent, const std::filesystem::path& file,
-                                                 bool required, FileReader& reader) {
+std::optional<fs::path> scenario_at(const YamlNode& parent, const fs::path& file, bool required,
+                                    FileReader& reader) {
   const YamlEntry* entry = parent.find("scenario");
   if (entry == nullptr) {
     if (required) reader.fail(parent.place, "'scenario' is missing: the scenario file that is run");
@@ -159,7 +174,7 @@ std::optional<std::filesystem::path> scenario_at(const YamlNode& parent, const s
   if (!name) return std::nullopt;
   const auto path = (file.parent_path() / *name).lexically_normal();
   std::error_code none;
-  if (std::filesystem::is_regular_file(path, none)) return path;
+  if (fs::is_regular_file(path, none)) return path;
   reader.fail(entry->value.place, fmt::format("scenario: no file {}", shown(path.string())));
   return std::nullopt;
 }

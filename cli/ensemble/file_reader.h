@@ -1,5 +1,6 @@
 #pragma once
 // What the readers of sweep and calibration files share: values of a YAML tree, and what is wrong with them.
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -44,9 +45,14 @@ class FileReader {
 
 /// What a sweep and a calibration say of their scenario besides its parameters.
 struct Variation {
+  std::filesystem::path folder;                           ///< of the file that says it
   std::vector<std::string> fixed;                         ///< overrides "key=value"
   std::vector<std::pair<std::string, std::string>> ties;  ///< the first key takes the value of the second
 };
+
+/// A value for a key of a scenario, as YAML; of a file that is found from `folder`, its whole path: the
+/// scenario may lie elsewhere. `quoted`: text, even where it looks like a number.
+std::string value_text(const std::string& text, bool quoted, const std::filesystem::path& folder);
 
 /// Reads `set` and `ties`; the keys followed must be among `parameters`, those that follow or are set must
 /// not, and no key may do both.

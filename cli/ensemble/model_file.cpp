@@ -16,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostParameters = 6;
+constexpr double kNoRoundNumber = 0.1234567;  // a coordinate at which no parameter is a whole number
 
 void read_parameters(const YamlNode& root, DiagnosisModel& model, FileReader& reader) {
   const YamlNode* map =
@@ -46,11 +47,18 @@ void read_parameters(const YamlNode& root, DiagnosisModel& model, FileReader& re
     reader.fail(map->place, fmt::format("parameters: 1 to {} are allowed", kMostParameters));
 }
 
+// Whether a parameter of this effect stands in the parameters, ties or set of the model.
+bool is_given(const std::string& effect, const DiagnosisModel& model) {
+  return std::any_of(model.places.begin(), model.places.end(),
+                     [&](const auto& key) { return key.first.starts_with("effects." + effect + "."); });
+}
+
 void read_effects(const YamlNode& root, DiagnosisModel& model, FileReader& reader) {
   std::vector<std::string> all;
   for (const Effect& effect : all_effects()) all.emplace_back(effect.name);
   if (root.find("effects") == nullptr) {
     model.effects = all;
+    std::erase_if(model.effects, [&](const std::string& name) { return is_given(name, model); });
     return;
   }
   const YamlNode* list = reader.list_at(root, "effects", true, "a list of names");
@@ -81,7 +89,7 @@ void read_experiments(const YamlNode& root, const fs::path& file, const fs::path
             reader.list_at(entry.value, "observables", true, "a list of numbers that a run gives"))
       for (const YamlNode& item : list->items) {
         const std::string output = reader.scalar(item, "observables").value_or("");
-        if (const std::string why = why_not_given(here.experiment.scenario, output); !why.empty())
+        if (const std::string why = why_not_measured(here.experiment.scenario, output); !why.empty())
           reader.fail(item.place, fmt::format("observables: {}: {}", shown(output), why));
         else
           here.observables.push_back(output);
@@ -111,18 +119,19 @@ class KeyCheck {
       bool good = true;
       for (const char* end : {"from", "to"})
         if (const YamlEntry* value = good ? entry.value.find(end) : nullptr)
-          good = check("parameters", entry, value->value.text, value->value.place);
+          good = check("parameters", entry, entry.key + "=" + value->value.text, value->value.place);
       if (!good) bad_.push_back(entry.key);
     });
     each_of("ties", [&](const YamlEntry& entry) {
       if (std::find(bad_.begin(), bad_.end(), entry.value.text) != bad_.end()) return;
       for (const BaseAxis& leader : model_.base)
         if (leader.key == entry.value.text &&
-            check("ties", entry, fmt::format("{}", leader.from), entry.key_place))
-          check("ties", entry, fmt::format("{}", leader.to), entry.key_place);
+            check("ties", entry, fmt::format("{}={}", entry.key, leader.from), entry.key_place))
+          check("ties", entry, fmt::format("{}={}", entry.key, leader.to), entry.key_place);
     });
     each_of("set", [&](const YamlEntry& entry) {
-      if (entry.value.kind == YamlKind::scalar) check("set", entry, entry.value.text, entry.value.place);
+      for (const std::string& fixed : model_.variation.fixed)
+        if (fixed.starts_with(entry.key + "=")) check("set", entry, fixed, entry.value.place);
     });
   }
 
@@ -140,8 +149,8 @@ class KeyCheck {
     }
   }
 
-  bool check(const char* map, const YamlEntry& entry, const std::string& value, const Place& place) {
-    const std::string why = why_not_set(entry.key + "=" + value, asset_dir_);
+  bool check(const char* map, const YamlEntry& entry, const std::string& set, const Place& place) {
+    const std::string why = why_not_set(set, asset_dir_);
     if (!why.empty())
       reader_.fail(why.starts_with("unknown key") ? entry.key_place : place, fmt::format("{}: {}", map, why));
     return why.empty();
@@ -154,14 +163,36 @@ class KeyCheck {
   std::vector<std::string> bad_;  // parameters
 };
 
+// Why an effect cannot be looked for in these experiments: one of them has it, or one that it does not go
+// with, or it acts in none.
+std::string why_not_looked_for(const Effect& effect, const std::vector<Dataset::Experiment>& experiments,
+                               const std::vector<Scenario>& scenarios) {
+  std::string inert;
+  bool acts = false;
+  for (std::size_t e = 0; e < experiments.size(); ++e) {
+    for (const EffectUse& use : scenarios[e].effects) {
+      if (use.values.front() == use.effect->absent) continue;
+      if (use.effect == &effect) return fmt::format("experiment {} has it", experiments[e].name);
+      if (use.effect->excludes == effect.name || effect.excludes == use.effect->name)
+        return fmt::format("experiment {} has {}, with which it does not go", experiments[e].name,
+                           use.effect->name);
+    }
+    const std::string why = why_inert(effect, effect_scene(scenarios[e]));
+    acts = acts || why.empty();
+    if (inert.empty()) inert = why;
+  }
+  return acts ? "" : "changes nothing " + inert;
+}
+
 }  // namespace
 
 std::vector<ScenarioError> why_not_simulated(const DiagnosisModel& model,
                                              const Dataset::Experiment& experiment,
                                              const fs::path& asset_dir) {
   std::vector<ScenarioError> reasons;
-  for (const double end : {-1.0, 1.0}) {
-    const ModelPoint point{Eigen::VectorXd::Constant(static_cast<Eigen::Index>(model.base.size()), end), {}};
+  for (const double coordinate : {-1.0, 1.0, kNoRoundNumber}) {
+    const ModelPoint point{
+        Eigen::VectorXd::Constant(static_cast<Eigen::Index>(model.base.size()), coordinate), {}};
     const ScenarioResult loaded =
         load_scenario(experiment.file, overrides_at(model, {model.base, {}}, experiment, point), asset_dir,
                       ReadFor::numbers);
@@ -224,15 +255,18 @@ ModelSpace space_of(const DiagnosisModel& model, const std::vector<Dataset::Expe
                     const std::vector<std::string>& without, const fs::path& asset_dir) {
   ModelSpace space{model.base, {}};
   const ModelPoint middle{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.base.size())), {}};
-  std::vector<EffectScene> scenes;
+  std::vector<Scenario> scenarios;
   for (const Dataset::Experiment& experiment : experiments)
-    scenes.push_back(
-        effect_scene(load_scenario(experiment.file, overrides_at(model, space, experiment, middle), asset_dir,
-                                   ReadFor::numbers)
-                         .scenario));
+    scenarios.push_back(load_scenario(experiment.file, overrides_at(model, space, experiment, middle),
+                                      asset_dir, ReadFor::numbers)
+                            .scenario);
   for (const std::string& name : model.effects) {
     if (std::find(without.begin(), without.end(), name) != without.end()) continue;
     const Effect& effect = *find_effect(name);
+    if (const std::string why = why_not_looked_for(effect, experiments, scenarios); !why.empty()) {
+      space.left_out.push_back(fmt::format("{}: {}", name, why));
+      continue;
+    }
     CandidateEffect candidate{name,
                               std::string(effect.title),
                               effect.absent,
@@ -245,8 +279,9 @@ ModelSpace space_of(const DiagnosisModel& model, const std::vector<Dataset::Expe
         candidate.axes.push_back(
             {fmt::format("effects.{}.{}", name, p.key), std::string(p.unit), p.prior_low, p.prior_high});
     for (std::size_t e = 0; e < experiments.size(); ++e)
-      if (why_inert(effect, scenes[e]).empty()) candidate.acts.push_back(experiments[e].name);
-    if (!candidate.acts.empty()) space.effects.push_back(std::move(candidate));
+      if (why_inert(effect, effect_scene(scenarios[e])).empty())
+        candidate.acts.push_back(experiments[e].name);
+    space.effects.push_back(std::move(candidate));
   }
   return space;
 }

@@ -4,11 +4,17 @@ namespace scree {
 
 OutputScope output_scope(const Scenario& scenario) {
   return {std::string(experiment_type(scenario)), scenario.output.sections, scenario.output.further_sections,
-          scenario.output.after_dumps};
+          scenario.output.after_dumps, false};
 }
 
 std::string why_not_given(const Scenario& scenario, const std::string& output) {
   return why_not_given(output_scope(scenario), output);
+}
+
+std::string why_not_measured(const Scenario& scenario, const std::string& output) {
+  OutputScope scope = output_scope(scenario);
+  scope.measured = true;
+  return why_not_given(scope, output);
 }
 
 std::string why_not_given(const Sweep& sweep, const std::string& output) {

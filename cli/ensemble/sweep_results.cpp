@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -22,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-const std::string kTableOf = "# Runs of sweep ";  // first line of a table
+const std::string kTableOf = "Runs of sweep ";  // comment at the head of a table
 
 const char* name_of(RunState state) {
   return state == RunState::done ? "done" : state == RunState::failed ? "failed" : "running";
@@ -42,16 +41,13 @@ std::optional<std::uint64_t> seed_in(const std::string& text) {
   return value;
 }
 
-// Throws if the first line of a table says that it is of another sweep.
-void check_sweep(const Sweep& sweep, const fs::path& file) {
-  std::ifstream in(file);
-  std::string line;
-  std::getline(in, line);
-  if (!line.empty() && line.back() == '\r') line.pop_back();
-  if (line.starts_with(kTableOf) && line.substr(kTableOf.size()) != sweep.name)
-    throw FileError(
-        file, 1,
-        fmt::format("these are runs of sweep {}, not of {}", line.substr(kTableOf.size()), sweep.name));
+// Throws if a table says that it is of another sweep.
+void check_sweep(const Sweep& sweep, const DelimitedTable& table, const fs::path& file) {
+  for (const auto& [line, text] : table.comments())
+    if (text.starts_with(kTableOf) && text.substr(kTableOf.size()) != sweep.name)
+      throw FileError(
+          file, line,
+          fmt::format("these are runs of sweep {}, not of {}", text.substr(kTableOf.size()), sweep.name));
 }
 
 // Throws if the columns are not those of a table of this sweep.
@@ -152,7 +148,7 @@ std::set<std::string> output_names(const std::vector<PointResults>& points) {
 
 void write_sweep_csv(const Sweep& sweep, const std::vector<PointResults>& points, const fs::path& file) {
   const std::set<std::string> outputs = output_names(points);
-  std::string text = kTableOf + sweep.name + "\n";
+  std::string text = "# " + kTableOf + sweep.name + "\n";
   for (const std::string& name : sweep.parameters) text += csv_field(name) + ",";
   text += "seed,state,version,wall_seconds";
   for (const std::string& name : outputs) text += ',' + csv_field(name);
@@ -173,7 +169,7 @@ void write_sweep_csv(const Sweep& sweep, const std::vector<PointResults>& points
 
 std::vector<PointResults> read_sweep_csv(const Sweep& sweep, const fs::path& file, bool refuse_others) {
   DelimitedTable table(file);
-  check_sweep(sweep, file);
+  check_sweep(sweep, table, file);
   check_columns(sweep, table);
   std::vector<PointResults> points;
   for (const SweepPoint& point : sweep.points)

@@ -9,8 +9,9 @@ Effect sticky_tools() {
       .name = "sticky_tools",
       .title = "rock that sticks to bed, blade or bucket",
       .doc =
-          "Wet fines make a truck bed, blade or bucket sticky: the load leaves late, and what is left in a "
-          "bed or bucket when all is at rest is carried back; it is not in the pile (carried_back_t).",
+          "Wet fines make a truck bed, blade or bucket sticky: the load leaves late, and what is still in a "
+          "bed or bucket when it has moved off is carried back; it is not in the pile "
+          "(carried_back_t).",
       .equation =
           "Contacts with beds, blades, buckets and other tools pull with F = 2 pi gamma R; gamma is such "
           "that a grain of D50 is pulled with bond_number times its weight: gamma = bond_number rho "

@@ -17,27 +17,13 @@ std::string in_quotes(std::string_view text) {
   return fmt::format("'{}{}'", text.substr(0, 40), text.size() > 40 ? "..." : "");
 }
 
-// 1.210: a thousand or a fraction, where commas are decimal. 0.210 can only be a fraction.
-bool may_have_a_thousands_separator(std::string_view text) {
+// 1.210, or 1,210: a thousand or a fraction. 0.210 can only be a fraction.
+bool may_be_a_thousand(std::string_view text) {
   if (!text.empty() && (text.front() == '+' || text.front() == '-')) text.remove_prefix(1);
-  const auto point = text.find('.');
-  return point >= 1 && point <= 3 && text.size() == point + 4 && text.front() != '0' &&
+  const auto mark = text.find_first_of(".,");
+  return mark >= 1 && mark <= 3 && text.size() == mark + 4 && text.front() != '0' &&
          std::count_if(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; }) ==
              static_cast<std::ptrdiff_t>(text.size()) - 1;
-}
-
-// Whether any field of a table is a number with a decimal comma.
-bool has_decimal_commas(std::string_view text, char separator) {
-  if (text.find(',') == std::string_view::npos) return false;
-  while (!text.empty()) {
-    const auto end = std::min(text.find_first_of(std::string{separator, '\r', '\n'}), text.size());
-    std::string_view field = trimmed(text.substr(0, end));
-    if (field.size() > 2 && field.front() == '"' && field.back() == '"')
-      field = field.substr(1, field.size() - 2);
-    if (field.find(',') != std::string_view::npos && number_in(field, true)) return true;
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return false;
 }
 
 }  // namespace
@@ -89,9 +75,8 @@ DelimitedTable::DelimitedTable(const std::filesystem::path& file, std::uintmax_t
   if (separator_ == ' ' && trimmed(head).find(' ') == std::string_view::npos) separator_ = ',';  // one column
   separator_ = stated.value_or(separator_);
   at_ = start, line_ = start_line;
+  comments_.clear();
   if (!read_row()) throw FileError(file, 0, "the file has no header");
-  if (separator_ == ';' || separator_ == '\t')
-    decimal_commas_ = has_decimal_commas(std::string_view(text_).substr(at_), separator_);
   header_line_ = row_line_;
   header_.assign(fields_.begin(), fields_.begin() + static_cast<std::ptrdiff_t>(used_));
   for (std::size_t k = 0; k < header_.size(); ++k) {
@@ -101,6 +86,31 @@ DelimitedTable::DelimitedTable(const std::filesystem::path& file, std::uintmax_t
     if (!header_[k].empty() && column(header_[k]) != k)
       fail(fmt::format("the column {} stands twice in the header", in_quotes(header_[k])));
   }
+  if (separator_ == ';' || separator_ == '\t') mixed_ = has_points_and_commas();
+}
+
+bool DelimitedTable::has_points_and_commas() {
+  if (text_.find(',', at_) == std::string::npos) return false;
+  struct Column {
+    bool numbers = true, points = false, commas = false;
+  };
+  std::vector<Column> columns(header_.size());
+  const std::size_t at = at_;
+  const int line = line_, row_line = row_line_;
+  while (read_row())
+    for (std::size_t k = 0; k < std::min(used_, columns.size()); ++k) {
+      const std::string& field = fields_[k];
+      Column& column = columns[k];
+      if (!column.numbers || field.empty()) continue;
+      column.numbers = number_in(field, true).has_value();
+      column.points = column.points || field.find('.') != std::string::npos;
+      column.commas = column.commas || field.find(',') != std::string::npos;
+    }
+  at_ = at, line_ = line, row_line_ = row_line;
+  const auto any = [&](bool Column::*mark) {
+    return std::any_of(columns.begin(), columns.end(), [&](const Column& c) { return c.numbers && c.*mark; });
+  };
+  return any(&Column::points) && any(&Column::commas);
 }
 
 std::optional<std::size_t> DelimitedTable::column(std::string_view name) const {
@@ -126,11 +136,12 @@ std::optional<double> DelimitedTable::number(std::size_t column) const {
   const std::string& text = fields_[column];
   if (text.empty()) return std::nullopt;
   const auto value = number_in(text, separator_ == ';' || separator_ == '\t');
-  if (value && decimal_commas_ && may_have_a_thousands_separator(text)) {
+  if (value && mixed_ && may_be_a_thousand(text)) {
     std::string whole = text;
-    whole.erase(whole.find('.'), 1);
+    whole.erase(whole.find_first_of(".,"), 1);
     fail(fmt::format(
-        "{}: {}: is it {} or {}? write it without a thousands separator, and with a decimal comma",
+        "{}: {}: is it {} or {}? the table has decimal points and decimal commas; write all numbers with one "
+        "of them and without a thousands separator",
         header_[column], in_quotes(text), whole, *value));
   }
   if (value) return value;
@@ -213,8 +224,16 @@ bool DelimitedTable::go_to_text() {
     if (!whole.empty() && whole.back() == '\r') whole.remove_suffix(1);
     whole = trimmed(whole);
     if (!whole.empty() && whole.front() != '#') return true;
+    if (!whole.empty() && header_.empty()) keep_comment(whole.substr(1));
     at_ = end + 1;
   }
+}
+
+void DelimitedTable::keep_comment(std::string_view line) {
+  if (comments_.size() >= 100) return;
+  while (!line.empty() && (is_blank(line.back()) || line.back() == ',' || line.back() == ';'))
+    line.remove_suffix(1);
+  comments_.push_back({line_, std::string(trimmed(line.substr(0, 1000)))});
 }
 
 }  // namespace scree

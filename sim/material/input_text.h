@@ -33,12 +33,19 @@ class DelimitedTable {
   explicit DelimitedTable(const std::filesystem::path& file, std::uintmax_t most = kMostBytes);
 
   const std::vector<std::string>& header() const { return header_; }  ///< as written, without blanks around
+  /// Lines with # above the header, without it, blanks around and the separators that spreadsheets put
+  /// behind; the first hundred of them, their first thousand bytes.
+  struct Comment {
+    int line;
+    std::string text;
+  };
+  const std::vector<Comment>& comments() const { return comments_; }
   /// Number of the column of this name, whatever its case; none if there is none.
   std::optional<std::size_t> column(std::string_view name) const;
   bool next();  ///< goes to the next row; false after the last. Throws unless it has a field a column
   const std::string& field(std::size_t column) const { return fields_[column]; }  ///< without blanks around
-  /// The number in a field; none if it is empty. Throws if it is no number, and for 1.210 in a table that has
-  /// decimal commas: the point may separate thousands.
+  /// The number in a field; none if it is empty. Throws if it is no number, and in a table whose numbers have
+  /// decimal commas and decimal points for 1.210 and 1,210: either may be a thousand.
   std::optional<double> number(std::size_t column) const;
   int line() const { return row_line_; }  ///< where this row begins
   int header_line() const { return header_line_; }
@@ -46,6 +53,8 @@ class DelimitedTable {
 
  private:
   std::optional<char> read_separator();  // that of a line `sep=;`, which is passed over
+  bool has_points_and_commas();          // in the rows from here on
+  void keep_comment(std::string_view line);
   bool read_row();
   bool go_to_text();  // to the next line that says something
   void read_field(std::string& field);
@@ -54,8 +63,9 @@ class DelimitedTable {
   std::string text_;
   std::size_t at_ = 0;
   int line_ = 1, row_line_ = 1, header_line_ = 1;
-  char separator_ = ',';         // ' ': blanks
-  bool decimal_commas_ = false;  // some number has one
+  char separator_ = ',';  // ' ': blanks
+  bool mixed_ = false;    // some numbers have a decimal comma, others a point
+  std::vector<Comment> comments_;
   std::vector<std::string> header_, fields_;
   std::size_t used_ = 0;  // of fields_, in this row
 };

@@ -1,4 +1,5 @@
 // Truck loads over the crest of a bench.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -9,9 +10,11 @@
 namespace scree {
 namespace {
 
-constexpr double kGuardWall = 0.3;   // thickness of the guard that holds a heaped load while it settles, m
-constexpr double kBedLeaves = 0.5;   // s given to rock that leans on the truck when it drives off
-constexpr double kHoistPause = 2.0;  // s that the bed stays up after hoisting
+constexpr double kGuardWall = 0.3;     // thickness of the guard that holds a heaped load while it settles, m
+constexpr double kAcceleration = 0.5;  // m/s2, of a truck that drives off with rock in its bed
+constexpr double kSpeed = 2;           // m/s, of it
+constexpr double kBedLeaves = 0.5;     // s given to rock that leans on the truck when it drives off
+constexpr double kHoistPause = 2.0;    // s that the bed stays up after hoisting
 
 Quaternion tilt(double degrees) {
   return Quaternion(Eigen::AngleAxisd(degrees * std::numbers::pi / 180.0, Vec3::UnitY()));
@@ -21,19 +24,21 @@ Pose truck_pose(const EndDump& e, double y, double tilt_deg) {
   return {{-e.truck.setback, y, e.bench.height + e.truck.drop_height}, tilt(tilt_deg)};
 }
 
-// The tailgate hangs from its upper edge. While the bed is hoisted it turns until it hangs plumb.
+// The tailgate hangs from its upper edge, plumb, whatever the tilt of the bed.
+Pose hanging_gate(const EndDump& e, double y, double tilt_deg) {
+  const Vec3 hinge(0, 0, e.truck.load_box.z());
+  Pose gate;
+  gate.rotation = tilt(0);
+  gate.position = truck_pose(e, y, tilt_deg).to_world(hinge) - gate.rotation * hinge;
+  return gate;
+}
+
+// The gate while the bed is hoisted.
 Motion swinging_gate(const EndDump& e, double y, double start, double seconds) {
   constexpr int kSteps = 20;
   std::vector<Motion::Key> keys;
-  const Vec3 hinge(0, 0, e.truck.load_box.z());
-  for (int k = 0; k <= kSteps; ++k) {
-    const double degrees = e.truck.tilt_deg * k / kSteps;
-    const Pose bed = truck_pose(e, y, degrees);
-    Pose gate;
-    gate.rotation = tilt(0);  // plumb in world axes, whatever the tilt of the bed
-    gate.position = bed.to_world(hinge) - gate.rotation * hinge;
-    keys.push_back({start + seconds * k / kSteps, gate});
-  }
+  for (int k = 0; k <= kSteps; ++k)
+    keys.push_back({start + seconds * k / kSteps, hanging_gate(e, y, e.truck.tilt_deg * k / kSteps)});
   return Motion(std::move(keys));
 }
 
@@ -53,12 +58,20 @@ std::vector<TriangleMesh> guard(const Vec3& box, double height) {
           make_box({-l, -h - t, low}, {0, -h, high}), make_box({-l, h, low}, {0, h + t, high})};
 }
 
+// How far a truck with rock in its bed drives, m: the length of the bed, less where its lip would come so
+// near to the end of the bench top that what falls from it is lost.
+double way_off(const EndDump& e) {
+  constexpr double kMargin = 2;  // m
+  const double length = e.truck.load_box.x();
+  return std::clamp(e.bench.top_length - e.truck.setback - kMargin, 0.5 * length, length);
+}
+
 }  // namespace
 
 RunOutcome run_end_dump(const Scenario& scenario, const EndDump& e, std::uint64_t seed, int threads,
                         const RunHooks& hooks) {
   const double toe = toe_of(e.bench), half = 0.5 * e.bench.width;
-  const Vec3 low(-e.bench.top_length - 2, -half - 2, -3);
+  const Vec3 low(-e.bench.top_length - e.truck.load_box.x() - 2, -half - 2, -3);
   const Vec3 high(toe + e.bench.floor_length + 2, half + 2,
                   e.bench.height + e.truck.drop_height + 3 * e.truck.load_box.norm());
   Stage stage(scenario, seed, threads, hooks, low, high);
@@ -107,8 +120,15 @@ RunOutcome run_end_dump(const Scenario& scenario, const EndDump& e, std::uint64_
         return stage.finish();
     }
     if (!stage.advance_to_rest("dumping", emptied, share + 0.95 * part)) return stage.finish();
-    stage.carry_back(
-        in_bed(truck_pose(e, y, e.truck.tilt_deg), e.truck.load_box, std::max(height, e.truck.load_box.z())));
+    const Pose tilted = truck_pose(e, y, e.truck.tilt_deg);
+    Departure truck{{{bed, tilted}},
+                    Vec3(-way_off(e), 0, 0),
+                    kAcceleration,
+                    kSpeed,
+                    in_bed(tilted, e.truck.load_box, std::max(height, e.truck.load_box.z()))};
+    if (e.truck.release == Release::hoist)
+      truck.parts.push_back({gate, hanging_gate(e, y, e.truck.tilt_deg)});
+    if (!stage.leave_with_tool(truck, share + 0.95 * part, share + 0.95 * part)) return stage.finish();
     world.remove_mesh(bed);
     if (e.truck.release == Release::hoist) world.remove_mesh(gate);
     if (!stage.advance(kBedLeaves, "truck leaves", share + 0.95 * part, share + part)) return stage.finish();

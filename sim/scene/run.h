@@ -63,7 +63,7 @@ struct RunOutcome {
   std::vector<Grain> original;           ///< every grain as generated
   std::vector<Grain> fixed;              ///< balls of the base layer
   std::optional<double> rebound_height;  ///< drop test: highest rise of its lowest point after the fall, m
-  double carried_back = 0;  ///< kg, that stayed in the bed or bucket and left with it; not in the pile
+  double carried_back = 0;  ///< kg, that left with the bed or bucket; not in the pile
   WorldStatistics statistics;
   std::optional<EnergyBalance> energy;  ///< closed at the end; none with engine impulse
   double simulated_seconds = 0, wall_seconds = 0;

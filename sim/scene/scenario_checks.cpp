@@ -164,8 +164,7 @@ class Checks {
       warnings_.push_back(fmt::format(
           "experiment.truck.tilt_deg: on a bed tilted by {:g} degrees rock neither slides nor rolls; it does "
           "above {:.3g} degrees, whose tangent is the smaller of mu and mu_r ({:g}). What does not spill "
-          "over "
-          "the lip falls on the bench top when the truck leaves",
+          "over the lip leaves with the truck",
           truck.tilt_deg, starts, least));
     if (!notes_.good({&truck.setback, &truck.load_box, &bench.top_length})) return;
     const double tilt = truck.release == Release::hoist ? 0 : truck.tilt_deg * std::numbers::pi / 180;

@@ -4,7 +4,6 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "sim/scene/scenario_read.h"
 #include "sim/scene/scenario_values.h"
@@ -31,20 +30,6 @@ std::string scaled_text(double value, double factor) {
   }
   const double below = std::nextafter(guess, -HUGE_VAL), above = std::nextafter(guess, HUGE_VAL);
   return number_text(below * factor == value ? below : above * factor == value ? above : guess);
-}
-
-/// Plain when it can be nothing but text, in double quotes (JSON's are YAML's) otherwise.
-std::string text_text(const std::string& text) {
-  const bool plain = !text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) != 0 &&
-                     std::all_of(text.begin(), text.end(), [](unsigned char c) {
-                       return std::isalnum(c) != 0 || c == '_' || c == '/' || c == '.' || c == '-';
-                     });
-  static const std::vector<std::string> words = {"true", "false", "null", "yes", "no", "on",
-                                                 "off",  "y",     "n",    "inf", "nan"};
-  std::string lower = text;
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (plain && std::find(words.begin(), words.end(), lower) == words.end()) return text;
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 template <class T, class F>
@@ -85,18 +70,18 @@ class Writer {
   void write(const Boolean& t, std::string_view name, int indent) {
     line(indent, name, *t.value ? "true" : "false");
   }
-  void write(const Text& t, std::string_view name, int indent) { line(indent, name, text_text(*t.value)); }
+  void write(const Text& t, std::string_view name, int indent) { line(indent, name, yaml_text(*t.value)); }
   void write(const Choice& t, std::string_view name, int indent) {
     line(indent, name, std::string(t.names[static_cast<std::size_t>(t.get())]));
   }
   void write(const MeshFile& t, std::string_view name, int indent) {
-    line(indent, name, text_text(asset_name(*t.value, asset_dir_).value_or(t.value->string())));
+    line(indent, name, yaml_text(asset_name(*t.value, asset_dir_).value_or(t.value->string())));
   }
   void write(const GradingFile& t, std::string_view name, int indent) {
     const auto in_gradings = asset_name(*t.value, asset_dir_ / "gradings");
     const bool named =
         in_gradings && in_gradings->find('/') == std::string::npos && in_gradings->ends_with(".csv");
-    line(indent, name, text_text(named ? t.value->stem().string() : t.value->string()));
+    line(indent, name, yaml_text(named ? t.value->stem().string() : t.value->string()));
   }
   void write(const Vector& t, std::string_view name, int indent) {
     const Vec3& v = *t.value;
@@ -112,7 +97,7 @@ class Writer {
     line(indent, name, flow(*t.value, [](std::uint64_t i) { return std::to_string(i); }));
   }
   void write(const Texts& t, std::string_view name, int indent) {
-    line(indent, name, flow(*t.value, text_text));
+    line(indent, name, flow(*t.value, yaml_text));
   }
   void write(const Group& t, std::string_view name, int indent) {
     line(indent, name, "");

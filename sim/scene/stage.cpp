@@ -14,7 +14,8 @@
 namespace scree {
 namespace {
 
-constexpr double kTick = 0.1;  // s of simulated time between looks at progress and rest
+constexpr double kTick = 0.1;           // s of simulated time between looks at progress and rest
+constexpr double kDepartureStep = 0.1;  // s between poses of a tool that leaves
 
 }  // namespace
 
@@ -126,8 +127,30 @@ void Stage::push_load(const Vec3& velocity) {
     world_->set_velocity(static_cast<std::int64_t>(first + k), velocity, Vec3::Zero());
 }
 
-void Stage::carry_back(const std::function<bool(const Vec3& place)>& inside) {
-  if (!replaying()) outcome_.carried_back += world_->take_out(inside);  // else it comes with the saved state
+bool Stage::leave_with_tool(const Departure& departure, double share_now, double share_then) {
+  if (observe([&] { return world_->mass_of(departure.inside); }) == 0) return true;
+  const double length = departure.way.norm(), start = world_->time();
+  const double gathers = departure.speed / departure.acceleration;  // s, until it is at its speed
+  std::vector<std::pair<double, double>> track{{0, 0}};             // s, m
+  for (int k = 1; track.back().second < length; ++k) {
+    const double t = k * kDepartureStep, ramp = std::min(t, gathers);
+    const double passed = 0.5 * departure.acceleration * ramp * ramp + departure.speed * (t - ramp);
+    track.emplace_back(t, std::min(passed, length));
+  }
+  for (const Departure::Part& part : departure.parts) {
+    std::vector<Motion::Key> keys;
+    for (const auto& [t, passed] : track) {
+      Pose pose = part.pose;
+      pose.position += passed / length * departure.way;
+      keys.push_back({start + t, pose});
+    }
+    world_->set_mesh_motion(part.mesh, Motion(std::move(keys)));
+  }
+  if (!advance(track.back().first, "leaving", share_now, share_then)) return false;
+  if (!replaying())  // else it comes with the saved state
+    outcome_.carried_back +=
+        world_->take_out([&](const Vec3& place) { return departure.inside(place - departure.way); });
+  return true;
 }
 
 double Stage::recall() {

@@ -1,11 +1,25 @@
 #pragma once
 // What all experiments share: a world, time that goes on with frames and progress, rest, and being saved.
 #include <chrono>
+#include <functional>
 #include <memory>
 
 #include "sim/scene/run.h"
 
 namespace scree {
+
+/// How a truck or a bucket leaves.
+struct Departure {
+  struct Part {
+    int mesh;
+    Pose pose;  ///< where it stands
+  };
+  std::vector<Part> parts;
+  Vec3 way;                                       ///< m
+  double acceleration;                            ///< m/s2
+  double speed;                                   ///< m/s, at most
+  std::function<bool(const Vec3& place)> inside;  ///< whether rock is in it while it stands
+};
 
 class Stage {
  public:
@@ -37,9 +51,6 @@ class Stage {
   /// Something a reader of the result should know.
   void note(std::string text) { outcome_.notes.push_back(std::move(text)); }
 
-  /// Takes the rock along that lies in a tool which leaves: its middle is `inside`. It is noted at the end.
-  void carry_back(const std::function<bool(const Vec3& place)>& inside);
-
   /// Something that the experiment learns from the world and acts on: look(), a number. When a run is taken
   /// up again it is what was learnt then; nothing else may be read of the world but its time.
   template <class Look>
@@ -56,6 +67,10 @@ class Stage {
   bool advance_to_rest(const char* stage, double share_now, double share_then);
 
   void set_dump(int dump, int dumps) { progress_.dump = dump, progress_.dumps = dumps; }
+  /// A tool that held a load leaves. Where there is rock in it still, its parts move off, so that what the
+  /// heap before it held back runs out, and what is in it at the end is taken along (carried_back). False
+  /// when the user ended the run.
+  bool leave_with_tool(const Departure& departure, double share_now, double share_then);
   /// The load of this number is at rest and its truck gone: keeps the pile if it was asked for.
   void dump_done(int dump, int dumps);
   /// The outcome. Unless the user ended the run, the user's own tools go to the end of their way before, and

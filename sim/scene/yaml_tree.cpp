@@ -4,8 +4,11 @@
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <unordered_map>
 
@@ -271,6 +274,19 @@ void merge_yaml(YamlNode& base, YamlNode over) {
       merge_yaml(same->value, std::move(entry.value));
     }
   }
+}
+
+std::string yaml_text(const std::string& text) {
+  const bool plain = !text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) != 0 &&
+                     std::all_of(text.begin(), text.end(), [](unsigned char c) {
+                       return std::isalnum(c) != 0 || c == '_' || c == '/' || c == '.' || c == '-';
+                     });
+  static const std::vector<std::string> words = {"true", "false", "null", "yes", "no", "on",
+                                                 "off",  "y",     "n",    "inf", "nan"};
+  std::string lower = text;
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (plain && std::find(words.begin(), words.end(), lower) == words.end()) return text;
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace scree

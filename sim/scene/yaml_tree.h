@@ -56,6 +56,9 @@ std::optional<YamlNode> read_yaml(const std::filesystem::path& file, std::vector
 /// Lays `over` on `base`: maps are merged key by key, all else is replaced.
 void merge_yaml(YamlNode& base, YamlNode over);
 
+/// A text as YAML: plain when it can be nothing but text, in double quotes (JSON's are YAML's) otherwise.
+std::string yaml_text(const std::string& text);
+
 /// Text as quoted in a message: one line, at most 60 bytes, in single quotes.
 std::string shown(std::string_view text);
 

@@ -324,13 +324,27 @@ void RockWorld::leave(int index) {
   sphere_lost(index);
 }
 
-double RockWorld::take_out(const std::function<bool(const Vec3& place)>& inside) {
-  double mass = 0;
+std::vector<int> RockWorld::leaders(const std::function<bool(const Vec3& place)>& inside) const {
+  std::vector<int> found;
   for (int i = 0; i < spheres_.movable; ++i) {
     if (fixed_[i] || spheres_.lost[i] || !spheres_.leads(i)) continue;
     const int other = spheres_.partner.empty() ? -1 : spheres_.partner[i];
     const Vec3 place = spheres_.place[i].vec();
-    if (!inside(other < 0 ? place : Vec3(0.5 * (place + spheres_.place[other].vec())))) continue;
+    if (inside(other < 0 ? place : Vec3(0.5 * (place + spheres_.place[other].vec())))) found.push_back(i);
+  }
+  return found;
+}
+
+double RockWorld::mass_of(const std::function<bool(const Vec3& place)>& inside) const {
+  double mass = 0;
+  for (const int i : leaders(inside)) mass += spheres_.grain_mass(i);
+  return mass;
+}
+
+double RockWorld::take_out(const std::function<bool(const Vec3& place)>& inside) {
+  double mass = 0;
+  for (const int i : leaders(inside)) {
+    const int other = spheres_.partner.empty() ? -1 : spheres_.partner[i];
     mass += spheres_.grain_mass(i);
     leave(i);
     if (other >= 0) leave(other);

@@ -100,8 +100,9 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   const MeshBody& mesh(int index) const { return *meshes_[index]; }
   /// Gives a sphere or clump another velocity (m/s) and spin (rad/s), and wakes it.
   void set_velocity(std::int64_t id, const Vec3& velocity, const Vec3& spin);
-  /// Takes the grains out of the model whose middle lies `inside`; returns their mass (kg). They do not count
-  /// as lost.
+  /// The grains whose middle lies `inside`: their mass (kg); takes them out of the model, where they do not
+  /// count as lost, and returns it.
+  double mass_of(const std::function<bool(const Vec3& place)>& inside) const;
   double take_out(const std::function<bool(const Vec3& place)>& inside);
   /// Gives a mesh a new motion; it should start where the mesh is.
   void set_mesh_motion(int index, Motion motion);
@@ -164,6 +165,8 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   virtual void mesh_leaves(int) {}
   virtual void sphere_lost(int index) = 0;
   void leave(int index);
+  // Grains whose middle lies inside; of a clump one of its spheres.
+  std::vector<int> leaders(const std::function<bool(const Vec3& place)>& inside) const;
   /// State that both engines share (world_state.cpp).
   template <class Stream>
   void shared_state(Stream& stream);

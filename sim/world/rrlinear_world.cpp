@@ -86,11 +86,13 @@ void RrlinearWorld::sphere_lost(int index) {
   blocks_due_ = true;
 }
 
-// What its contacts hold goes with it.
+// What its contacts hold goes with it; of spheres that have left it went with them.
 void RrlinearWorld::mesh_leaves(int index) {
-  for (int i = 0; i < facets_.rows(); ++i)
+  for (int i = 0; i < facets_.rows(); ++i) {
+    if (spheres_.lost[i]) continue;
     for (int k = 0; k < facets_.count(i); ++k)
       if (const MeshContact& c = facets_.contact(i, k); c.body == index) account_.tools -= held_by(c, i);
+  }
 }
 
 void RrlinearWorld::advance_to(double end) {

@@ -82,11 +82,17 @@ TEST_F(Said, ParametersAtTheEndOfTheirRange) {
   EXPECT_FALSE(at_end(0.2959));
   EXPECT_THAT(words(), Not(HasSubstr("re-calibrated a")));
   EXPECT_TRUE(at_end(0.2961));
-  EXPECT_THAT(words(), HasSubstr("At the end of its range: re-calibrated a 0.296 (0.100 to 0.300)"));
+  EXPECT_THAT(words(), HasSubstr("At the end of its range: re-calibrated a 0.296 of a range from 0.100 to 0.300"));
   EXPECT_THAT(words(), HasSubstr("Widen it in the model file if rock may be so."));
+  // What was simulated lies there, and the fit does not: that value is the one said.
+  j.best.base[0] = 0;
+  o.calibrated->at.base[0] = -1;
+  EXPECT_NEAR(fitted_parameters(o.space, j, &*o.calibrated)[0].at_end.value_or(0), 0.1, 1e-12);
+  EXPECT_THAT(words(), HasSubstr("re-calibrated a 0.100 of a range from 0.100 to 0.300"));
   o.diagnosis.verdict = {Kind::nothing, {}};
   o.augmented.reset();
   EXPECT_THAT(words(), Not(HasSubstr("Widen it")));
+  EXPECT_FALSE(fitted_models(o)[0].parameters[0].at_end) << "nor marked in the report";
 }
 
 // Effect 1 lies between 0, where it does nothing, and 1: there is nothing to look for beyond 0.
@@ -127,7 +133,7 @@ TEST_F(Said, AsManyParametersAsNumbersAreNoTest) {
   const Diagnosis d = diagnose(world.space, few, LearntModel(world.space, world.experiments, runs));
   EXPECT_TRUE(d.nominal.is_test) << "nothing is fitted";
   EXPECT_FALSE(d.calibration.gap.is_test);
-  EXPECT_THAT(gap_in_words(d.calibration.gap), HasSubstr("with as many parameters as numbers: no test"));
+  EXPECT_THAT(gap_in_words(d.calibration.gap), HasSubstr("with no more numbers than parameters: no test"));
 }
 
 class Report : public Said {

@@ -12,6 +12,7 @@
 #include "cli/ensemble/dataset_write.h"
 #include "cli/ensemble/file_kind.h"
 #include "cli/ensemble/output_scope.h"
+#include "cli/ensemble/scenario_patch.h"
 #include "scree_version.h"
 
 namespace scree {
@@ -231,6 +232,38 @@ TEST_F(DatasetFile, WrongExperimentsAreNamed) {
               HasSubstr("experiments.heap is no scenario"));
   EXPECT_THAT(experiments("{a/b: {scenario: " + scenario + "}}"), HasSubstr("must be a word"));
   EXPECT_THAT(experiments("[heap]"), HasSubstr("experiments: a map"));
+}
+
+TEST_F(DatasetFile, FilesThatItSetsLieBesideIt) {
+  put("observables.csv", good);
+  fs::copy_file(source / "assets/gradings/Lab0.csv", folder / "my sieve: 1.csv");
+  const auto grading = [&](const fs::path& dataset) {
+    const DatasetResult r = load_dataset(dataset, source / "assets");
+    return r.errors.empty() ? r.dataset.experiments.front()
+                            : Dataset::Experiment{r.errors.front().text(), {}, {}, {}};
+  };
+  put("dataset.yaml", "experiments: {heap: {scenario: " + (source / "scenarios/repose_lab.yaml").string() +
+                          ", set: {grading: 'my sieve: 1.csv'}}}\nobservables: observables.csv\n");
+  const Dataset::Experiment read = grading(folder / "dataset.yaml");
+  EXPECT_EQ(read.name, "heap");
+  EXPECT_EQ(read.scenario.grading_file, folder / "my sieve: 1.csv");
+  // Handed over to a scenario or a dataset in another folder, it is the same file.
+  fs::create_directories(folder / "other");
+  put("other/patch.yaml", scenario_patch(read.file, folder / "other", read.overrides, {}));
+  const ScenarioResult patched = load_scenario(folder / "other/patch.yaml", {}, source / "assets");
+  ASSERT_THAT(patched.errors, IsEmpty()) << patched.errors.front().text();
+  EXPECT_EQ(patched.scenario.grading_file, read.scenario.grading_file);
+  DatasetDraft draft;
+  draft.experiments.push_back({"heap", read.file, read.overrides, {{"angle_deg", {25, 2, 4}}}});
+  write_dataset(draft, folder / "other");
+  EXPECT_EQ(grading(folder / "other/dataset.yaml").scenario.grading_file, read.scenario.grading_file);
+  // Of one made on the command line files are found from where the command is called.
+  const fs::path before = fs::current_path();
+  fs::current_path(folder);
+  draft.experiments.front().overrides = {"grading=my sieve: 1.csv"};
+  write_dataset(draft, folder / "other");
+  fs::current_path(before);
+  EXPECT_EQ(grading(folder / "other/dataset.yaml").scenario.grading_file, read.scenario.grading_file);
 }
 
 TEST_F(DatasetFile, ThatIsWrittenCanBeRead) {

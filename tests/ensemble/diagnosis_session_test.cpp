@@ -24,6 +24,8 @@ using Kind = DiagnosisVerdict::Kind;
 
 const fs::path kAssets = fs::path(SCREE_SOURCE_DIR) / "assets";
 
+constexpr double kRatios = 100;  // ratios of diameters and the like are above 0
+
 // The program without its simulator: a run's numbers are formulas of its scenario, plus noise of its seed.
 class FormulaSimulator {
  public:
@@ -62,7 +64,7 @@ class FormulaSimulator {
         const double normal = std::sqrt(-2 * std::log(1 - random.uniform())) *
                               std::cos(2 * std::numbers::pi * random.uniform());
         result.outputs[names[k]] =
-            means[k] + (k % 3 - 1) * together * cohesion * twisting * (1 - cohesion / 4) + 0.3 * normal;
+            (k == 0 ? 0 : kRatios) + means[k] + (k % 3 - 1) * together * cohesion * twisting * (1 - cohesion / 4) + 0.3 * normal;
         if (request.seed >
             700'000)  // those of the design are below, those of twins have a simulator of their own
           result.outputs[names[k]] += (k % 2 == 0 ? 1 : -1) * fits_are_off_by;

@@ -97,6 +97,17 @@ TEST_F(SweepTable, OfAnotherSweepIsRefused) {
   EXPECT_THAT(
       [this] { read_sweep_csv(sweep, file); },
       ThrowsMessage<std::runtime_error>(HasSubstr(":1: these are runs of sweep coarse, not of fine")));
+  // As a spreadsheet leaves it: with a byte order mark, an empty row, and separators behind the comment.
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  std::string table = text.str();
+  table.insert(table.find('\n'), ",,,,");
+  std::ofstream(file) << "\xEF\xBB\xBF\n" << table;
+  EXPECT_THAT(
+      [this] { read_sweep_csv(sweep, file); },
+      ThrowsMessage<std::runtime_error>(HasSubstr(":2: these are runs of sweep coarse, not of fine")));
+  sweep.name = "coarse";
+  EXPECT_EQ(read_sweep_csv(sweep, file).size(), points().size());
 }
 
 TEST_F(SweepTable, MeansAreOfPilesAtRest) {

@@ -43,6 +43,28 @@ TEST(EndDump, WhatSticksToTheBedIsCarriedBackAndDoesNotFallThroughIt) {
   }
 }
 
+// What contacts with the bed hold is booked once, however much it is.
+TEST(EndDump, EnergyClosesWhenMuchSticks) {
+  const RunOutcome sticky = run("small_dump.yaml", {"effects.sticky_tools.bond_number=30"});
+  EXPECT_GT(sticky.carried_back, 0.2 * mass_of(sticky.original));
+  ASSERT_TRUE(sticky.energy);
+  EXPECT_LT(std::abs(sticky.energy->relative_error()), 0.01);
+}
+
+// A bed low over the bench top: the heap before its lip holds back more than half of the load, which runs out
+// when the truck drives off. Nothing sticks.
+TEST(EndDump, WhatTheHeapHeldBackRunsOutWhenTheTruckDrivesOff) {
+  for (const char* release : {"open_gate", "hoist"}) {
+    const RunOutcome low =
+        run("small_dump.yaml",
+            {std::string("experiment.truck.release=") + release, "experiment.truck.drop_height_m=0.5",
+             "experiment.truck.setback_m=1", "experiment.bench.top_length_m=14"});
+    EXPECT_LT(low.carried_back, 0.05 * mass_of(low.original)) << release;
+    EXPECT_LT(low.statistics.lost_mass, 0.01 * mass_of(low.original)) << release;
+    EXPECT_TRUE(low.energy && std::abs(low.energy->relative_error()) < 0.01) << release;
+  }
+}
+
 TEST(EndDump, ClumpsAreCarriedBackWhole) {
   const RunOutcome clumps =
       run("small_dump.yaml", {"effects.sticky_tools.bond_number=3", "effects.clumps.elongation=0.4"});
