@@ -1,7 +1,6 @@
 // Grains from a table, and words and numbers from a text.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <map>
 #include <regex>
 
@@ -9,8 +8,6 @@
 
 namespace scree {
 namespace {
-
-constexpr double kLargestInteger = 9007199254740992.0;  // 2^53: exact as a double
 
 struct Unit {
   std::string_view name;
@@ -78,32 +75,39 @@ RawSnapshot read_csv_snapshot(const std::filesystem::path& file, double length_u
   raw.in_metres = true;
   raw.has_mass = has("mass"), raw.has_id = has("id"), raw.has_dump = has("dump");
   while (table.next()) {
+    const GrainPlace place{file, table.line(), raw.grains.size()};
     const auto value = [&](std::string_view name) {
       const Column& column = columns.find(name)->second;
       const auto number = table.number(column.at);
       if (!number) table.fail(fmt::format("{} is empty", table.header()[column.at]));
       return *number * column.factor;
     };
-    const auto whole = [&](std::string_view name) {
-      const double number = value(name);
-      if (number != std::floor(number) || std::abs(number) > kLargestInteger)
-        table.fail(fmt::format("{} must be an integer", name));
-      return number;
+    const auto value_if_any = [&](std::string_view name) -> std::optional<double> {
+      if (!has(name) || !table.number(columns.find(name)->second.at)) return std::nullopt;
+      return value(name);
     };
     Grain grain;
     grain.position = {value("x"), value("y"), value("z")};
-    grain.diameter = has("diameter") ? value("diameter") : 2 * value("radius");
+    grain.diameter = has("diameter") ? diameter_of(value("diameter"), value_if_any("radius"), place)
+                                     : diameter_of({}, value("radius"), place);
     if (raw.has_mass) grain.mass = value("mass");
-    if (raw.has_id) grain.id = static_cast<std::int64_t>(whole("id"));
-    if (raw.has_dump) {
-      const double dump = whole("dump");
-      if (!(dump >= 1 && dump <= 1e6)) table.fail("dump must be an integer from 1 on");
-      grain.dump = static_cast<int>(dump);
-    }
+    if (raw.has_id) grain.id = id_of(value("id"), place);
+    if (raw.has_dump) grain.dump = dump_of(value("dump"), place);
     raw.grains.push_back(grain);
     raw.lines.push_back(table.line());
   }
   return raw;
+}
+
+std::vector<std::string_view> parts_of(std::string_view text, std::string_view separators, std::size_t most) {
+  std::vector<std::string_view> parts;
+  for (std::size_t at = 0;
+       parts.size() < most && (at = text.find_first_not_of(separators, at)) != std::string_view::npos;) {
+    const std::size_t end = std::min(text.find_first_of(separators, at), text.size());
+    parts.push_back(text.substr(at, end - at));
+    at = end;
+  }
+  return parts;
 }
 
 std::string_view TextCursor::next_line() {

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "sim/io/snapshot_formats.h"
 
@@ -10,6 +9,7 @@ namespace scree {
 namespace {
 
 constexpr std::string_view kFrame = "ITEM: TIMESTEP";
+constexpr double kMostAtoms = 1e9;
 
 struct Frame {
   std::size_t at;
@@ -29,16 +29,6 @@ std::vector<Frame> frames_of(std::string_view text) {
   return frames;
 }
 
-std::vector<std::string> words_of(std::string_view line) {
-  std::vector<std::string> words;
-  for (std::size_t at = 0; (at = line.find_first_not_of(" \t", at)) != std::string_view::npos;) {
-    const std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
-    words.emplace_back(line.substr(at, end - at));
-    at = end;
-  }
-  return words;
-}
-
 // What a column of atoms holds. Scaled coordinates (xs) are shares of the box; xu and xsu are unwrapped.
 struct Columns {
   int position[3] = {-1, -1, -1}, velocity[3] = {-1, -1, -1};
@@ -47,29 +37,39 @@ struct Columns {
   std::size_t count = 0;
 };
 
-Columns columns_of(const std::vector<std::string>& names) {
+Columns columns_of(const std::filesystem::path& file, int line, std::string_view item) {
+  const std::vector<std::string_view> names = parts_of(item, " \t", kMostColumns + 1);
+  if (names.size() > kMostColumns)
+    throw FileError(file, line, fmt::format("ITEM: ATOMS has more than {} columns", kMostColumns));
   Columns columns;
   columns.count = names.size();
   for (int k = 0; k < static_cast<int>(names.size()); ++k) {
-    const std::string& name = names[static_cast<std::size_t>(k)];
+    const std::string_view name = names[static_cast<std::size_t>(k)];
+    const auto keep = [&](int& column, std::string_view meaning) {
+      if (column >= 0)
+        throw FileError(file, line,
+                        fmt::format("two columns are '{}': {:.40} and {:.40}", meaning,
+                                    names[static_cast<std::size_t>(column)], name));
+      column = k;
+    };
     if (const auto axis = std::string_view("xyz").find(name.front());
         axis != std::string_view::npos && name.size() <= 3) {
-      const std::string_view rest = std::string_view(name).substr(1);
+      const std::string_view rest = name.substr(1);
       if (rest.empty() || rest == "u" || rest == "s" || rest == "su") {
-        columns.position[axis] = k;
+        keep(columns.position[axis], name.substr(0, 1));
         columns.scaled[axis] = rest == "s" || rest == "su";
         continue;
       }
     }
     const std::string_view meaning = meaning_of_column(name);
-    if (meaning == "diameter") columns.diameter = k;
-    if (meaning == "radius") columns.radius = k;
-    if (meaning == "mass") columns.mass = k;
-    if (meaning == "id") columns.id = k;
-    if (meaning == "dump") columns.dump = k;
-    if (meaning == "vx") columns.velocity[0] = k;
-    if (meaning == "vy") columns.velocity[1] = k;
-    if (meaning == "vz") columns.velocity[2] = k;
+    if (meaning == "diameter") keep(columns.diameter, meaning);
+    if (meaning == "radius") keep(columns.radius, meaning);
+    if (meaning == "mass") keep(columns.mass, meaning);
+    if (meaning == "id") keep(columns.id, meaning);
+    if (meaning == "dump") keep(columns.dump, meaning);
+    if (meaning == "vx") keep(columns.velocity[0], meaning);
+    if (meaning == "vy") keep(columns.velocity[1], meaning);
+    if (meaning == "vz") keep(columns.velocity[2], meaning);
   }
   return columns;
 }
@@ -96,8 +96,9 @@ RawSnapshot read_lammps_dump(const std::filesystem::path& file, std::string_view
       cursor.next_line();
     } else if (is("ITEM: NUMBER OF ATOMS")) {
       const double number = cursor.number();
-      if (!(number >= 0 && number < 1e9 && number == std::floor(number))) cursor.fail("no number of atoms");
-      count = static_cast<std::size_t>(number);
+      const auto atoms = integer_in(number, 0, kMostAtoms);
+      if (!atoms) cursor.fail("no number of atoms");
+      count = static_cast<std::size_t>(*atoms);
       cursor.next_line();
     } else if (is("ITEM: BOX BOUNDS")) {
       const bool tilted = item.find("xy xz yz") != std::string_view::npos;
@@ -108,7 +109,7 @@ RawSnapshot read_lammps_dump(const std::filesystem::path& file, std::string_view
       }
       has_box = !tilted;
     } else if (is("ITEM: ATOMS")) {
-      columns = columns_of(words_of(item.substr(11)));
+      columns = columns_of(file, line_of_item, item.substr(11));
       line_of_columns = line_of_item;
       break;
     } else if (is("ITEM:")) {  // UNITS, TIME: one line
@@ -127,38 +128,33 @@ RawSnapshot read_lammps_dump(const std::filesystem::path& file, std::string_view
     lacks("no radius: dump the atoms with radius or diameter (dump custom ... id x y z radius)");
   raw.has_mass = columns.mass >= 0, raw.has_id = columns.id >= 0, raw.has_dump = columns.dump >= 0;
 
-  std::vector<double> row(columns.count);
-  const auto column = [&](int at) { return row[static_cast<std::size_t>(at)]; };
   for (std::size_t k = 0; k < *count; ++k) {
     const int line = cursor.line();
-    const std::string_view atom = cursor.next_line();
-    const std::vector<std::string> words = words_of(atom);
+    const std::vector<std::string_view> words = parts_of(cursor.next_line(), " \t", columns.count + 1);
     if (words.size() != columns.count)
       throw FileError(file, line,
                       fmt::format("atom {} of {}: {} values, the frame has {} columns", k + 1, *count,
-                                  words.size(), columns.count));
-    for (std::size_t j = 0; j < words.size(); ++j) {
-      const auto value = number_in(words[j]);
-      row[j] = value.value_or(0);
-      // Other columns, such as an element's name, may be words.
-      const int at = static_cast<int>(j);
-      const bool needed = at == columns.diameter || at == columns.radius || at == columns.mass ||
-                          at == columns.id || at == columns.dump ||
-                          std::find(std::begin(columns.position), std::end(columns.position), at) !=
-                              std::end(columns.position);
-      if (needed && !value)
-        throw FileError(file, line, fmt::format("'{:.40}' is no finite number", words[j]));
-    }
+                                  words.size() > columns.count ? "more" : fmt::format("{}", words.size()),
+                                  columns.count));
+    // Other columns, such as an element's name, may be words.
+    const auto column = [&](int at) {
+      const std::string_view word = words[static_cast<std::size_t>(at)];
+      const auto value = number_in(word);
+      if (!value) throw FileError(file, line, fmt::format("'{:.40}' is no finite number", word));
+      return *value;
+    };
+    const auto column_if_any = [&](int at) { return at >= 0 ? std::optional(column(at)) : std::nullopt; };
+    const GrainPlace place{file, line, k};
     Grain grain;
     for (int axis = 0; axis < 3; ++axis) {
       const double value = column(columns.position[axis]);
       grain.position[axis] = columns.scaled[axis] ? low[axis] + value * length[axis] : value;
       if (columns.velocity[axis] >= 0) grain.velocity[axis] = column(columns.velocity[axis]);
     }
-    grain.diameter = columns.diameter >= 0 ? column(columns.diameter) : 2 * column(columns.radius);
+    grain.diameter = diameter_of(column_if_any(columns.diameter), column_if_any(columns.radius), place);
     if (raw.has_mass) grain.mass = column(columns.mass);
-    if (raw.has_id) grain.id = static_cast<std::int64_t>(std::clamp(column(columns.id), -1e15, 1e15));
-    if (raw.has_dump) grain.dump = static_cast<int>(std::clamp(column(columns.dump), 0.0, 1e6));
+    if (raw.has_id) grain.id = id_of(column(columns.id), place);
+    if (raw.has_dump) grain.dump = dump_of(column(columns.dump), place);
     raw.grains.push_back(grain);
     raw.lines.push_back(line);
   }

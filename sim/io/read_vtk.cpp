@@ -1,8 +1,6 @@
 // Legacy VTK files (VTK File Formats, version 2.0 to 5.1): points with a radius or diameter each.
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "sim/io/vtk_points.h"
 
 namespace scree {
@@ -57,14 +55,16 @@ class VtkFile {
       if (kind != "POLYDATA" && kind != "UNSTRUCTURED_GRID")
         cursor_.fail(fmt::format("DATASET {:.40}: POLYDATA or UNSTRUCTURED_GRID is read", kind));
     } else if (word == "POINTS") {
+      if (points_.count() > 0) cursor_.fail("POINTS stand twice");
       const std::size_t n = count();
+      if (n > kMostPoints) cursor_.fail(fmt::format("more than {} points", kMostPoints));
       const VtkType& type = read_type();
-      points_.add_positions(values(times(n, 3), type));
+      points_.add_piece(values(times(n, 3), type));
     } else if (word == "VERTICES" || word == "LINES" || word == "POLYGONS" || word == "TRIANGLE_STRIPS" ||
                word == "CELLS") {
       read_cells();
     } else if (word == "CELL_TYPES") {
-      values(count(), kTypes[2]);
+      skip(count(), kTypes[2]);
     } else if (word == "POINT_DATA" || word == "CELL_DATA") {
       of_points_ = word == "POINT_DATA";
       rows_ = count();
@@ -73,20 +73,19 @@ class VtkFile {
       const std::string name(cursor_.word());
       const VtkType& type = read_type();
       const std::string_view parts = trimmed(cursor_.next_line());
-      const auto n = parts.empty() ? 1.0 : number_in(parts).value_or(0);
-      if (!(n >= 1 && n <= 4)) cursor_.fail("SCALARS: 1 to 4 components");
+      const auto n = integer_in(parts.empty() ? 1.0 : number_in(parts).value_or(0), 1, 4);
+      if (!n) cursor_.fail("SCALARS: 1 to 4 components");
       if (cursor_.word() != "LOOKUP_TABLE") cursor_.fail("SCALARS: LOOKUP_TABLE is missing");
       cursor_.word();
-      keep(name, values(times(rows_, static_cast<std::size_t>(n)), type), static_cast<std::size_t>(n));
+      read_values(name, static_cast<std::size_t>(*n), rows_, type);
     } else if (word == "LOOKUP_TABLE") {
       cursor_.word();
       const std::size_t n = count();
-      values(times(n, 4), binary_ ? kTypes[5] : kTypes[0]);
+      skip(times(n, 4), binary_ ? kTypes[5] : kTypes[0]);
     } else if (word == "VECTORS" || word == "NORMALS" || word == "TENSORS") {
       const std::string name(cursor_.word());
       const VtkType& type = read_type();
-      const std::size_t width = word == "TENSORS" ? 9 : 3;
-      keep(name, values(times(rows_, width), type), width);
+      read_values(name, word == "TENSORS" ? 9 : 3, rows_, type);
     } else if (word == "FIELD") {
       cursor_.word();
       const std::size_t arrays = count();
@@ -105,8 +104,15 @@ class VtkFile {
       name = cursor_.word();
     }
     const std::size_t width = count(), rows = count();
-    Values array = values(times(width, rows), read_type());
-    if (of_points_ && rows == points_.count()) keep(name, array, width);
+    read_values(name, width, rows, read_type());
+  }
+
+  // Values of an array, where grains are made of it.
+  void read_values(const std::string& name, std::size_t width, std::size_t rows, const VtkType& type) {
+    if (of_points_ && points_.wants(name, width, rows))
+      points_.add(name, values(rows, type));
+    else
+      skip(times(width, rows), type);
   }
 
   void read_cells() {
@@ -114,13 +120,13 @@ class VtkFile {
     cursor_.next_line();
     TextCursor ahead = cursor_;
     if (ahead.word() != "OFFSETS") {  // before version 5.1
-      data(second, kTypes[2]);
+      skip_data(second, kTypes[2]);
       return;
     }
     cursor_.word();
-    values(first, read_type());
+    skip(first, read_type());
     if (cursor_.word() != "CONNECTIVITY") cursor_.fail("CONNECTIVITY is missing");
-    values(second, read_type());
+    skip(second, read_type());
   }
 
   void skip_metadata() {
@@ -131,9 +137,9 @@ class VtkFile {
 
   std::size_t count() {
     const double number = cursor_.number();
-    if (!(number >= 0 && number <= kMostValues && number == std::floor(number)))
-      cursor_.fail(fmt::format("{:g} is no count", number));
-    return static_cast<std::size_t>(number);
+    const auto whole = integer_in(number, 0, kMostValues);
+    if (!whole) cursor_.fail(fmt::format("{:g} is no count", number));
+    return static_cast<std::size_t>(*whole);
   }
   std::size_t times(std::size_t a, std::size_t b) const {
     if (b > 0 && a > kMostValues / b) cursor_.fail("too many values");
@@ -150,9 +156,6 @@ class VtkFile {
   // Values that begin on the next line.
   Values values(std::size_t n, const VtkType& type) {
     if (binary_) cursor_.next_line();
-    return data(n, type);
-  }
-  Values data(std::size_t n, const VtkType& type) {
     Values out;
     if (binary_) {
       const std::size_t size = type.number.size;
@@ -166,8 +169,16 @@ class VtkFile {
     return out;
   }
 
-  void keep(const std::string& name, const Values& array, std::size_t width) {
-    if (of_points_ && points_.wants(name, width, rows_)) points_.add(name, array);
+  // The same, of which nothing is kept.
+  void skip(std::size_t n, const VtkType& type) {
+    if (binary_) cursor_.next_line();
+    skip_data(n, type);
+  }
+  void skip_data(std::size_t n, const VtkType& type) {
+    if (binary_)
+      cursor_.bytes(n * type.number.size);
+    else
+      for (std::size_t k = 0; k < n; ++k) cursor_.number();
   }
 
   TextCursor cursor_;

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <pugixml.hpp>
 #include <stdexcept>
 
@@ -12,7 +11,6 @@
 namespace scree {
 namespace {
 
-constexpr double kMostPoints = 20'000'000;           // as many as a run may have
 constexpr std::ptrdiff_t kMostElements = 1'000'000;  // pugixml takes some 100 bytes for each
 
 struct XmlType {
@@ -105,16 +103,20 @@ class VtkXmlFile {
 
   void read_piece(const pugi::xml_node& piece) {
     const double said = number_in(trimmed(piece.attribute("NumberOfPoints").value())).value_or(-1);
-    if (!(said >= 0 && said == std::floor(said)))
+    if (said > static_cast<double>(kMostPoints - points_.count()))
+      fail(piece, fmt::format("more than {} points", kMostPoints));
+    const auto count = integer_in(said, 0, static_cast<double>(kMostPoints));
+    if (!count)
       fail(piece,
            fmt::format("NumberOfPoints '{:.40}' is no count", piece.attribute("NumberOfPoints").value()));
-    if (said + static_cast<double>(points_.count()) > kMostPoints)
-      fail(piece, fmt::format("more than {:.0f} points", kMostPoints));
-    const auto rows = static_cast<std::size_t>(said);
-    if (rows == 0) return;
+    const auto rows = static_cast<std::size_t>(*count);
+    if (rows == 0) {
+      points_.add_piece({});
+      return;
+    }
     const pugi::xml_node places = piece.child("Points").child("DataArray");
     if (!places || components_of(places) != 3) fail(piece, "has no Points of 3 components");
-    points_.add_positions(values_of(places, 3 * rows));
+    points_.add_piece(values_of(places, 3 * rows));
     for (const pugi::xml_node array : piece.child("PointData").children("DataArray")) {
       const char* name = array.attribute("Name").value();
       if (points_.wants(name, components_of(array), rows)) points_.add(name, values_of(array, rows));

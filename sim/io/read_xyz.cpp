@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "sim/io/snapshot_formats.h"
 
 namespace scree {
 namespace {
 
-constexpr int kMostColumns = 1000;
+constexpr double kMostGrains = 1e18;  // a file ends before
 
 struct Frame {
   std::size_t at = 0;  // of its second line
@@ -26,7 +25,7 @@ Frame frame_of(const std::filesystem::path& file, std::string_view text, std::op
   while (cursor.rest().find_first_not_of(" \t\r\n") != std::string_view::npos) {
     const std::string_view first = trimmed(cursor.next_line());
     const auto number = number_in(first);
-    if (!number || !(*number >= 0 && *number == std::floor(*number)))
+    if (!number || !integer_in(*number, 0, kMostGrains))
       throw FileError(
           file, cursor.line() - 1,
           fmt::format("'{:.40}' is no number of grains, with which a frame of XYZ begins", first));
@@ -59,20 +58,11 @@ std::string_view value_of(std::string_view line, std::string_view key) {
     at += quoted;
     const std::size_t end =
         std::min(quoted ? line.find('"', at) : line.find_first_of(" \t", at), line.size());
-    if (in_small_letters(name) == in_small_letters(key)) return line.substr(at, end - at);
+    if (name.size() == key.size() && in_small_letters(name) == in_small_letters(key))
+      return line.substr(at, end - at);
     at = end + quoted;
   }
   return {};
-}
-
-std::vector<std::string_view> parts_of(std::string_view text, std::string_view separators) {
-  std::vector<std::string_view> parts;
-  for (std::size_t at = 0; (at = text.find_first_not_of(separators, at)) != std::string_view::npos;) {
-    const std::size_t end = std::min(text.find_first_of(separators, at), text.size());
-    parts.push_back(text.substr(at, end - at));
-    at = end;
-  }
-  return parts;
 }
 
 struct Columns {
@@ -82,27 +72,32 @@ struct Columns {
 };
 
 Columns columns_of(const TextCursor& cursor, std::string_view properties) {
-  const std::vector<std::string_view> parts = parts_of(properties, ":");
+  // Each has a column at least: one more of them than columns are read is too many.
+  const std::vector<std::string_view> parts = parts_of(properties, ":", 3 * (kMostColumns + 1));
   if (parts.empty())
     cursor.fail(
         "no Properties=species:S:1:pos:R:3:radius:R:1: plain XYZ says no radii; write extended XYZ with "
         "them");
   if (parts.size() % 3 != 0) cursor.fail("Properties must be name:type:columns, one after another");
   Columns columns;
+  const auto keep = [&](int& column, std::string_view meaning) {
+    if (column >= 0) cursor.fail(fmt::format("Properties: two columns are '{}'", meaning));
+    column = columns.count;
+  };
   for (std::size_t k = 0; k < parts.size(); k += 3) {
     const auto width = number_in(parts[k + 2]);
-    if (!width || !(*width >= 1 && *width <= kMostColumns && *width == std::floor(*width)))
+    if (!width || !integer_in(*width, 1, kMostColumns))
       cursor.fail(fmt::format("Properties: '{:.40}' has '{:.40}' columns", parts[k], parts[k + 2]));
-    const std::string name = in_small_letters(parts[k]);
-    const std::string_view meaning = meaning_of_column(name);
-    if (*width == 3 && (name == "pos" || name == "position")) columns.position = columns.count;
-    if (*width == 3 && (name == "velo" || name == "velocity")) columns.velocity = columns.count;
+    const std::string name = in_small_letters(parts[k].substr(0, kLongestName));
+    const std::string_view meaning = meaning_of_column(parts[k]);
+    if (*width == 3 && (name == "pos" || name == "position")) keep(columns.position, "pos");
+    if (*width == 3 && (name == "velo" || name == "velocity")) keep(columns.velocity, "velo");
     if (*width == 1) {
-      if (meaning == "diameter") columns.diameter = columns.count;
-      if (meaning == "radius") columns.radius = columns.count;
-      if (meaning == "mass") columns.mass = columns.count;
-      if (meaning == "id") columns.id = columns.count;
-      if (meaning == "dump") columns.dump = columns.count;
+      if (meaning == "diameter") keep(columns.diameter, meaning);
+      if (meaning == "radius") keep(columns.radius, meaning);
+      if (meaning == "mass") keep(columns.mass, meaning);
+      if (meaning == "id") keep(columns.id, meaning);
+      if (meaning == "dump") keep(columns.dump, meaning);
     }
     columns.count += static_cast<int>(*width);
     if (columns.count > kMostColumns)
@@ -127,24 +122,27 @@ RawSnapshot read_xyz(const std::filesystem::path& file, std::string_view text, s
   raw.has_mass = columns.mass >= 0, raw.has_id = columns.id >= 0, raw.has_dump = columns.dump >= 0;
   for (std::size_t k = 0; k < chosen.count; ++k) {
     const TextCursor row = cursor;
-    const std::vector<std::string_view> words = parts_of(cursor.next_line(), " \t");
-    if (words.size() != static_cast<std::size_t>(columns.count))
-      row.fail(fmt::format("grain {} of {}: {} values, Properties have {}", k + 1, chosen.count, words.size(),
-                           columns.count));
+    const auto wanted = static_cast<std::size_t>(columns.count);
+    const std::vector<std::string_view> words = parts_of(cursor.next_line(), " \t", wanted + 1);
+    if (words.size() != wanted)
+      row.fail(fmt::format("grain {} of {}: {} values, Properties have {}", k + 1, chosen.count,
+                           words.size() > wanted ? "more" : fmt::format("{}", words.size()), wanted));
     const auto number = [&](int at) {
       const auto value = number_in(words[static_cast<std::size_t>(at)]);
       if (!value) row.fail(fmt::format("'{:.40}' is no finite number", words[static_cast<std::size_t>(at)]));
       return *value;
     };
+    const auto number_if_any = [&](int at) { return at >= 0 ? std::optional(number(at)) : std::nullopt; };
+    const GrainPlace place{file, row.line(), k};
     Grain grain;
     for (int axis = 0; axis < 3; ++axis) {
       grain.position[axis] = number(columns.position + axis);
       if (columns.velocity >= 0) grain.velocity[axis] = number(columns.velocity + axis);
     }
-    grain.diameter = columns.diameter >= 0 ? number(columns.diameter) : 2 * number(columns.radius);
+    grain.diameter = diameter_of(number_if_any(columns.diameter), number_if_any(columns.radius), place);
     if (raw.has_mass) grain.mass = number(columns.mass);
-    if (raw.has_id) grain.id = static_cast<std::int64_t>(std::clamp(number(columns.id), -1e15, 1e15));
-    if (raw.has_dump) grain.dump = static_cast<int>(std::clamp(number(columns.dump), 0.0, 1e6));
+    if (raw.has_id) grain.id = id_of(number(columns.id), place);
+    if (raw.has_dump) grain.dump = dump_of(number(columns.dump), place);
     raw.grains.push_back(grain);
     raw.lines.push_back(row.line());
   }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "sim/io/grain_values.h"
 #include "sim/io/snapshot_reader.h"
 #include "sim/material/input_text.h"
 
@@ -20,12 +21,16 @@ struct RawSnapshot {
   std::vector<Grain> original, fixed;
 };
 
+/// Columns of a row that are read; bounds what a line of any length takes.
+inline constexpr int kMostColumns = 1000;
+
 /// What a column or an array holds, by the names that programs give it: x, y, z, diameter, radius, mass, id,
 /// dump, vx, vy, vz; empty for anything else. Case does not count.
 std::string_view meaning_of_column(std::string_view name);
 
 /// `length_unit`: of columns that name none.
 RawSnapshot read_csv_snapshot(const std::filesystem::path& file, double length_unit);
+/// `text` and `bytes`: of the file, without a byte order mark.
 RawSnapshot read_lammps_dump(const std::filesystem::path& file, std::string_view text,
                              std::optional<int> frame);
 RawSnapshot read_xyz(const std::filesystem::path& file, std::string_view text, std::optional<int> frame);
@@ -35,6 +40,9 @@ RawSnapshot read_trajectory_frame(const std::filesystem::path& file, std::option
 
 /// Index of a frame from 0 among `count`; throws FileError.
 std::size_t frame_index(const std::filesystem::path& file, std::optional<int> frame, std::size_t count);
+
+/// Parts of a text between separators, empty ones left out; those after the first `most` are not looked at.
+std::vector<std::string_view> parts_of(std::string_view text, std::string_view separators, std::size_t most);
 
 /// Numbers of a text one after another, lines counted: what dumps, XYZ and VTK files are made of.
 class TextCursor {

@@ -12,6 +12,7 @@
 namespace scree {
 namespace {
 
+constexpr std::size_t kLongestFirstLine = 256;                // of XYZ: a number
 constexpr double kFarthest = 1e6;                             // m
 constexpr double kLeastDiameter = 1e-7, kMostDiameter = 1e3;  // m
 
@@ -24,7 +25,7 @@ Vec3 turned(const Vec3& v, SnapshotOptions::Up up) {
 }
 
 RawSnapshot read_raw(const std::filesystem::path& file, const SnapshotOptions& options) {
-  std::string head(256, '\0');
+  std::string head(4, '\0');
   {
     std::ifstream in(file, std::ios::binary);
     in.read(head.data(), static_cast<std::streamsize>(head.size()));
@@ -39,23 +40,25 @@ RawSnapshot read_raw(const std::filesystem::path& file, const SnapshotOptions& o
       throw FileError(file, 0, "a trajectory of scree is in metres: leave out the unit of length");
     return read_trajectory_frame(file, options.frame);
   }
-  const std::string bytes = read_input_bytes(file);
-  if (head.compare(0, 14, "# vtk DataFile") == 0) {
+  std::string whole = read_input_bytes(file);
+  std::string_view bytes = whole;
+  if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
+  if (bytes.starts_with("# vtk DataFile")) {
     one_frame("a VTK file");
     return read_vtk(file, bytes);
   }
-  const std::size_t start = head.compare(0, 3, "\xEF\xBB\xBF") == 0 ? 3 : 0;  // after a byte order mark
-  if (head.compare(start, 5, "<?xml") == 0 || head.compare(start, 8, "<VTKFile") == 0) {
+  if (bytes.starts_with("<?xml") || bytes.starts_with("<VTKFile")) {
     one_frame("a VTK file");
     return read_vtk_xml(file, bytes);
   }
   require_text(file, bytes);
-  if (head.compare(0, 5, "ITEM:") == 0) return read_lammps_dump(file, bytes, options.frame);
-  const std::size_t end = head.find_first_of("\r\n");
-  if (const auto first = number_in(trimmed(head.substr(0, end)));
-      end != std::string::npos && first && *first >= 0)
+  if (bytes.starts_with("ITEM:")) return read_lammps_dump(file, bytes, options.frame);
+  const std::string_view start = bytes.substr(0, kLongestFirstLine);
+  const std::size_t end = start.find_first_of("\r\n");
+  if (end != std::string_view::npos && number_in(start.substr(0, end)))
     return read_xyz(file, bytes, options.frame);
   one_frame("a table");
+  whole = {};  // a table reads its file itself
   return read_csv_snapshot(file, options.length_unit.value_or(1));
 }
 
@@ -118,6 +121,7 @@ std::string_view meaning_of_column(std::string_view name) {
       {"velocity:2", "vz"},
       {"particle_id", "id"},
   }};
+  if (name.size() > kLongestName) return {};
   const std::string small = in_small_letters(trimmed(name));
   for (const Alias& alias : kAliases)
     if (alias.name == small) return alias.meaning;
@@ -159,8 +163,7 @@ SnapshotRead read_snapshot(const std::filesystem::path& file, const SnapshotOpti
   }
   for (auto* others : {&raw.original, &raw.fixed})
     for (Grain& grain : *others) grain.position = turned(grain.position, options.up) + options.shift;
-  std::stable_sort(raw.grains.begin(), raw.grains.end(),
-                   [](const Grain& a, const Grain& b) { return a.id < b.id; });
+  std::sort(raw.grains.begin(), raw.grains.end(), [](const Grain& a, const Grain& b) { return a.id < b.id; });
   for (std::size_t k = 1; k < raw.grains.size(); ++k)
     if (raw.grains[k].id == raw.grains[k - 1].id)
       throw FileError(file, 0, fmt::format("id {} stands twice", raw.grains[k].id));

@@ -37,8 +37,9 @@ class Bytes {
       return std::string(text_.substr(at_ - count, count));
     }
     while (ready_.size() < count) decode_four();
-    std::string bytes = ready_.substr(0, count);
-    ready_.erase(0, count);
+    std::string bytes = std::move(ready_);
+    ready_ = bytes.substr(count);
+    bytes.resize(count);
     return bytes;
   }
   std::size_t left() const { return text_.size() - at_ + ready_.size(); }
@@ -80,7 +81,7 @@ std::uint64_t whole_number(std::string_view bytes, std::endian order) {
 std::string inflated(Bytes& bytes, const VtkEncoding& encoding, std::size_t size) {
   const auto number = [&] { return whole_number(bytes.next(encoding.header_size), encoding.order); };
   const std::uint64_t blocks = number(), block = number(), last = number();
-  if (blocks == 0 || block == 0 || last > block || blocks > bytes.left() ||
+  if (blocks == 0 || block == 0 || last > block || blocks > bytes.left() / encoding.header_size ||
       (blocks - (last > 0)) > size / block || (blocks - (last > 0)) * block + last != size)
     fail(fmt::format("{} blocks of {} bytes and a last of {} are no array of {} bytes", blocks, block, last,
                      size));

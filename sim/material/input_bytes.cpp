@@ -7,8 +7,6 @@
 namespace scree {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
 // What a file is by its first bytes, where that is no text.
 const char* kind_of_binary(std::string_view bytes) {
   const auto begins = [&](std::string_view mark) { return bytes.substr(0, mark.size()) == mark; };

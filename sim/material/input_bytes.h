@@ -20,6 +20,9 @@ struct FileError : std::runtime_error {
 /// Largest file that is read whole unless a reader says less, bytes.
 inline constexpr std::uintmax_t kMostBytes = 1'000'000'000;
 
+/// What some programs begin a text in UTF-8 with.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
 /// The bytes of a file. Throws FileError if there is none, nothing in it, or more than `most` bytes; nothing
 /// is read then.
 std::string read_input_bytes(const std::filesystem::path& file, std::uintmax_t most = kMostBytes);

@@ -166,7 +166,8 @@ TEST_F(SnapshotReader, WhatCannotBeReadIsNamed) {
   EXPECT_THAT(error("x,y,z,radius,mass\n0,0,0,1,0\n"), HasSubstr("mass 0 must be above 0"));
   EXPECT_THAT(error("x,y,z,radius,id\n0,0,0,1,7\n0,0,2,1,7\n"), HasSubstr("id 7 stands twice"));
   EXPECT_THAT(error("x,y,z,radius,id\n0,0,0,1,7.5\n"), HasSubstr("id must be an integer"));
-  EXPECT_THAT(error("x,y,z,radius,dump\n0,0,0,1,0\n"), HasSubstr("dump must be an integer from 1 on"));
+  EXPECT_THAT(error("x,y,z,radius,dump\n0,0,0,1,0\n"),
+              HasSubstr("dump must be an integer from 1 to 1000000, found 0"));
   EXPECT_THAT(error("x [ft],y,z,radius\n0,0,0,1\n"), HasSubstr("none of m, cm, mm, um"));
   EXPECT_THAT(error("x,y,z,radius,x_mm\n0,0,0,1,1\n"), HasSubstr("two columns are 'x'"));
   EXPECT_THAT(error("\x89HDF\r\n\x1A\n and nothing else"), HasSubstr("damaged HDF5"));

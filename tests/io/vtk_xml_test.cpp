@@ -1,4 +1,5 @@
 // Piles out of VTK XML: in every encoding, as VTK 9.1 writes it, and what cannot be read.
+#include <sys/resource.h>
 #include <zlib.h>
 
 #include <cstring>
@@ -146,8 +147,8 @@ TEST_F(SnapshotReader, BrokenXmlIsNamed) {
 TEST_F(SnapshotReader, XmlWithSizesThatLieIsNamed) {
   const std::vector<double> radii{0.5, 0.25};
   EXPECT_THAT(error(two("1 1", "ascii", "", "-2")), HasSubstr(":4: NumberOfPoints '-2' is no count"));
-  EXPECT_THAT(error(two("1 1", "ascii", "", "1e30")), HasSubstr(":4: more than 20000000 points"));
-  EXPECT_THAT(error(two("1 1", "ascii", "", "20000000")), HasSubstr("the file ends before its data do"));
+  EXPECT_THAT(error(two("1 1", "ascii", "", "1e30")), HasSubstr(":4: more than 5000000 points"));
+  EXPECT_THAT(error(two("1 1", "ascii", "", "5000000")), HasSubstr("the file ends before its data do"));
   EXPECT_THAT(error(two(plain(radii, 8))), HasSubstr("array 'radius': 8 bytes, an array of 16 is needed"));
   EXPECT_THAT(error(two(plain({0.5}, 16))), HasSubstr("the data end before the array does"));
   EXPECT_THAT(error(two("")), HasSubstr("the data end before the array does"));
@@ -166,9 +167,53 @@ TEST_F(SnapshotReader, XmlWithSizesThatLieIsNamed) {
   // A block of more than is said.
   EXPECT_THAT(error(two(packed({1, 1, 1}, {1, 16, 0, 40}), "binary", kZlib)), HasSubstr("array 'radius': "));
   // Points by the million that a few bytes cannot hold.
-  std::string many = replaced(two("1 1", "ascii", kZlib, "20000000"), "format=\"ascii\">\n0 0 1\n1 0 1\n",
-                              "format=\"binary\">" + packed(radii, {1, 240000000, 0, 16}));
+  std::string many = replaced(two("1 1", "ascii", kZlib, "5000000"), "format=\"ascii\">\n0 0 1\n1 0 1\n",
+                              "format=\"binary\">" + packed(radii, {1, 60000000, 0, 16}));
   EXPECT_THAT(error(many), HasSubstr("the data end before the array does"));
+}
+
+// Address space, bytes (proc(5), statm).
+[[maybe_unused]] std::size_t memory_of_this_process() {
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+// A file of points at 0 with radius 1, a byte a number.
+std::string packed_points(std::size_t count, int pieces) {
+  const auto array = [](const char* attributes, const std::string& bytes) {
+    const std::string block = deflated(bytes);
+    std::string header;
+    for (const std::size_t number : {std::size_t{1}, bytes.size(), std::size_t{0}, block.size()})
+      put_number(header, static_cast<std::uint32_t>(number));
+    return fmt::format("<DataArray type=\"Int8\" {} format=\"binary\">{}</DataArray>", attributes,
+                       base64(header) + base64(block));
+  };
+  const std::string piece =
+      fmt::format("<Piece NumberOfPoints=\"{}\"><PointData>{}</PointData><Points>{}</Points></Piece>\n",
+                  count, array("Name=\"radius\"", std::string(count, 1)),
+                  array("NumberOfComponents=\"3\"", std::string(3 * count, 0)));
+  std::string text = fmt::format("<VTKFile type=\"PolyData\" {}>\n<PolyData>\n", kZlib);
+  for (int k = 0; k < pieces; ++k) text += piece;
+  return text + "</PolyData>\n</VTKFile>\n";
+}
+
+TEST_F(SnapshotReader, PointsPackedIntoFewBytesAreBounded) {
+  EXPECT_EQ(read(packed_points(1000, 3)).snapshot.grains.size(), 3000u);
+  EXPECT_THAT(error(packed_points(2'000'000, 3)), HasSubstr(":5: more than 5000000 points"));
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  // As many as are read. A point takes 24 bytes as three numbers and 80 as a grain, at once.
+  const std::string most = packed_points(5'000'000, 1);
+  EXPECT_LT(most.size(), 40'000u);
+  EXPECT_EXIT(
+      {
+        rlimit limit{};
+        limit.rlim_cur = limit.rlim_max = memory_of_this_process() + 5'000'000u * 110u;
+        setrlimit(RLIMIT_AS, &limit);
+        std::exit(read(most).snapshot.grains.size() == 5'000'000u ? 0 : 1);
+      },
+      testing::ExitedWithCode(0), "");
+#endif
 }
 
 TEST_F(SnapshotReader, BrokenAppendedDataAreNamed) {

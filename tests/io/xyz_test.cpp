@@ -82,6 +82,12 @@ TEST_F(SnapshotReader, BrokenXyzIsNamed) {
   EXPECT_THAT(error(replaced(xyz(), "5\n", "1e18\n")), HasSubstr("ends after 5 of 1e+18 grains"));
   EXPECT_THAT(error(replaced(xyz(), "5\n", "4\n")),
               HasSubstr(":7: '14 Rock 2 -1 1.5 0 nan 0 0.375 441.78646' is no number of grains"));
+  EXPECT_THAT(error(replaced(xyz(), "12 Rock", "12 Rock Rock Rock")),
+              HasSubstr(":5: grain 3 of 5: more values, Properties have 10"));
+  std::string many = "1\nProperties=pos:R:3:radius:R:1";
+  for (int k = 0; k < 997; ++k) many += ":a:R:1";  // 1001 columns
+  EXPECT_THAT(error(many + "\n0 0 0 1\n"), HasSubstr(":2: Properties: more than 1000 columns"));
+  EXPECT_THAT(error("-5\nProperties=pos:R:3:radius:R:1\n"), HasSubstr(":1: '-5' is no number of grains"));
   EXPECT_THAT(error("0\nProperties=pos:R:3:radius:R:1\n"), HasSubstr("has no grains"));
   EXPECT_THAT(error("5\n"), HasSubstr("the file ends after 0 of 5 grains"));
 }
