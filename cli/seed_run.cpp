@@ -154,6 +154,9 @@ void simulate(const scree::Scenario& scenario, SeedRun& run, const SeedSettings&
   put_away();
 }
 
+constexpr const char* kNotEnoughMemory =
+    "not enough memory; run fewer seeds side by side (--threads 1), or a scenario with fewer spheres";
+
 }  // namespace
 
 void run_seed(const scree::Scenario& scenario, SeedRun& run, const SeedSettings& settings,
@@ -169,8 +172,10 @@ void run_seed(const scree::Scenario& scenario, SeedRun& run, const SeedSettings&
   } catch (const std::invalid_argument& error) {
     run.failure = error.what();
   } catch (const std::bad_alloc&) {
-    run.failure =
-        "not enough memory; run fewer seeds side by side (--threads 1), or a scenario with fewer spheres";
+    run.failure = kNotEnoughMemory;
+    run.worth_resuming = true;
+  } catch (const std::system_error& error) {  // a thread has no room for its stack
+    run.failure = error.code() == std::errc::resource_unavailable_try_again ? kNotEnoughMemory : error.what();
     run.worth_resuming = true;
   } catch (const std::exception& error) {
     run.failure = error.what();

@@ -11,8 +11,9 @@
 namespace scree {
 namespace {
 
-constexpr double kReach = 20;  // heights from the crest beyond which nothing belongs to its slope
-constexpr double kGap = 1.5;   // places from one to the next between which the surface ends
+constexpr double kHalfBand = 4;  // m, most of it: half a truck bed
+constexpr double kReach = 20;    // heights from the crest beyond which nothing belongs to its slope
+constexpr double kGap = 1.5;     // places from one to the next between which the surface ends
 
 }  // namespace
 
@@ -30,7 +31,8 @@ std::vector<std::array<double, 2>> slope_profile(const std::vector<Grain>& pile,
   }
   if (near.empty()) return {};
   const double middle = mass_quantile(std::move(across), 0.5);
-  const double half_band = std::max(height / 5, 1.5 * largest), bin = std::max(height / 20, largest / 10);
+  const double half_band = std::max(std::min(height / 5, kHalfBand), 1.5 * largest),
+               bin = std::max(height / 20, largest / 10);
   const SurfaceHeight surface(near, middle - half_band, middle + half_band, bin);
   std::vector<std::array<double, 2>> profile;
   const auto last = std::lround(std::floor((right + largest) / bin));

@@ -10,8 +10,8 @@ namespace scree {
 
 /// Height of the surface (m) along x, in a band about the y that halves the mass: of each twentieth of
 /// `height`, the crest's above the floor, or of a tenth of the largest grain if that is more, the height that
-/// half of the band reaches (SurfaceHeight). The band is a fifth of `height` wide on either side, at least
-/// three radii of the largest grain: a block alone does not make a surface. Places where rock covers less
+/// half of the band reaches (SurfaceHeight). The band is a fifth of `height` wide on either side, at most
+/// 4 m, at least three radii of the largest grain: a block alone does not make a surface. Places where rock covers less
 /// than half of the band are left out. Each row is x, z. Throws std::invalid_argument unless height > 0.
 std::vector<std::array<double, 2>> slope_profile(const std::vector<Grain>& pile, double height);
 

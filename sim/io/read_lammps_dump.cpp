@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "sim/io/snapshot_formats.h"
 
@@ -29,10 +30,14 @@ std::vector<Frame> frames_of(std::string_view text) {
   return frames;
 }
 
-// What a column of atoms holds. Scaled coordinates (xs) are shares of the box; xu and xsu are unwrapped.
+// How coordinates are written, the best first; xu and xsu are unwrapped, xs and xsu are shares of the box.
+constexpr std::string_view kWays[] = {"", "u", "s", "su"};
+
+// What a column of atoms holds.
 struct Columns {
   int position[3] = {-1, -1, -1}, velocity[3] = {-1, -1, -1};
-  bool scaled[3] = {false, false, false};
+  std::size_t way[3] = {0, 0, 0};  // in which position is written
+  bool scaled(int axis) const { return way[axis] >= 2; }
   int diameter = -1, radius = -1, mass = -1, id = -1, dump = -1;
   std::size_t count = 0;
 };
@@ -54,10 +59,13 @@ Columns columns_of(const std::filesystem::path& file, int line, std::string_view
     };
     if (const auto axis = std::string_view("xyz").find(name.front());
         axis != std::string_view::npos && name.size() <= 3) {
-      const std::string_view rest = name.substr(1);
-      if (rest.empty() || rest == "u" || rest == "s" || rest == "su") {
-        keep(columns.position[axis], name.substr(0, 1));
-        columns.scaled[axis] = rest == "s" || rest == "su";
+      const auto found = std::find(std::begin(kWays), std::end(kWays), name.substr(1));
+      if (const auto way = static_cast<std::size_t>(found - std::begin(kWays)); way < std::size(kWays)) {
+        int& position = columns.position[axis];
+        if (position >= 0 && columns.way[axis] < way) continue;
+        if (position >= 0 && columns.way[axis] > way) position = -1;
+        keep(position, name.substr(0, 1));
+        columns.way[axis] = way;
         continue;
       }
     }
@@ -122,7 +130,7 @@ RawSnapshot read_lammps_dump(const std::filesystem::path& file, std::string_view
   const auto lacks = [&](const char* what) { throw FileError(file, line_of_columns, what); };
   for (int axis = 0; axis < 3; ++axis) {
     if (columns.position[axis] < 0) lacks("ITEM: ATOMS has no x, y, z");
-    if (columns.scaled[axis] && !has_box) lacks("scaled coordinates need an upright box: dump x y z");
+    if (columns.scaled(axis) && !has_box) lacks("scaled coordinates need an upright box: dump x y z");
   }
   if (columns.diameter < 0 && columns.radius < 0)
     lacks("no radius: dump the atoms with radius or diameter (dump custom ... id x y z radius)");
@@ -148,7 +156,7 @@ RawSnapshot read_lammps_dump(const std::filesystem::path& file, std::string_view
     Grain grain;
     for (int axis = 0; axis < 3; ++axis) {
       const double value = column(columns.position[axis]);
-      grain.position[axis] = columns.scaled[axis] ? low[axis] + value * length[axis] : value;
+      grain.position[axis] = columns.scaled(axis) ? low[axis] + value * length[axis] : value;
       if (columns.velocity[axis] >= 0) grain.velocity[axis] = column(columns.velocity[axis]);
     }
     grain.diameter = diameter_of(column_if_any(columns.diameter), column_if_any(columns.radius), place);

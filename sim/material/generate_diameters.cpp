@@ -129,19 +129,33 @@ double worst_error(const std::vector<double>& diameters, const Grading& grading,
   return worst;
 }
 
-/// Expected number of spheres: the integral of dP M / v(d), exact for a curve linear in log d.
-double expected_count(const Grading& grading, double mass, double sphere_factor, const SphereShape& shape) {
+/// mass / density(d) is this times d^-exponent.
+double solid_mass_factor(double mass, const RockDensity& density) {
+  return mass / density.value * std::pow(density.diameter, density.exponent);
+}
+
+}  // namespace
+
+double mean_inverse_power(const Grading& grading, double power) {
   double sum = 0;
   const auto& points = grading.points();
   for (std::size_t i = 1; i < points.size(); ++i) {
     const double a = points[i - 1].diameter, b = points[i].diameter;
-    sum += (points[i].passing - points[i - 1].passing) / std::log(b / a) *
-           (std::pow(a, -shape.power()) - std::pow(b, -shape.power())) / shape.power();
+    const double mean =
+        power == 0 ? 1 : (std::pow(a, -power) - std::pow(b, -power)) / (power * std::log(b / a));
+    sum += (points[i].passing - points[i - 1].passing) * mean;
   }
-  return sum * mass / sphere_factor;
+  return sum;
 }
 
-}  // namespace
+double expected_spheres(const Grading& grading, double mass, const RockDensity& density) {
+  return 6 / std::numbers::pi * solid_mass_factor(mass, density) *
+         mean_inverse_power(grading, 3 + density.exponent);
+}
+
+double solid_volume(const Grading& grading, double mass, const RockDensity& density) {
+  return solid_mass_factor(mass, density) * mean_inverse_power(grading, density.exponent);
+}
 
 std::vector<double> generate_diameters(const Grading& grading, double mass, const RockDensity& density,
                                        std::uint64_t seed, std::uint64_t dump) {
@@ -155,7 +169,7 @@ std::vector<double> generate_diameters(const Grading& grading, double mass, cons
   if (mass < sphere_factor * std::pow(grading.min_diameter(), shape.power()))
     throw std::invalid_argument(
         fmt::format("mass {} kg is less than the smallest sphere of grading {}", mass, grading.name()));
-  if (const double count = expected_count(grading, mass, sphere_factor, shape); count > most_spheres)
+  if (const double count = expected_spheres(grading, mass, density); count > most_spheres)
     throw std::invalid_argument(fmt::format("{} kg of grading {} are {:.2g} spheres; scalp its fine end",
                                             mass, grading.name(), count));
 

@@ -51,6 +51,15 @@ class Grading {
 /// between 1 micrometre and 1 km. Throws FileError: what is wrong, what is allowed.
 Grading read_grading(const std::filesystem::path& file);
 
+/// Mean of d^-power (m^-power) over the mass, exact for a curve linear in log d: between two points it is
+/// (a^-power - b^-power) / (power ln(b/a)), and 1 for power 0.
+double mean_inverse_power(const Grading& grading, double power);
+
+/// Expected number of spheres of a mass (kg), and the volume of their rock (m3): the integrals of dP * mass
+/// over the mass of a sphere, and over the density, at each diameter.
+double expected_spheres(const Grading& grading, double mass, const RockDensity& density);
+double solid_volume(const Grading& grading, double mass, const RockDensity& density);
+
 /// Diameters (m), largest first, of spheres that together weigh `mass` (kg) within 0.5 % and whose passing
 /// curve is within 2 points of the grading at every point of it, for any seed, as long as the mass allows it.
 /// What is achievable: the error at a diameter is always below the share of the mass that one sphere of about

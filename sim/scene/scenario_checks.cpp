@@ -79,7 +79,7 @@ class Checks {
   void read_the_grading() {
     if (!notes_.good({&s_.grading_file})) return;
     try {
-      grading_ = effective_model(s_).grading;
+      model_ = effective_model(s_);
     } catch (const std::exception& error) {
       fail(&s_.grading_file, std::string("grading: ") + error.what());
     }
@@ -88,24 +88,30 @@ class Checks {
   /// `load` describes the mass; `cure` says what to change beside the grading.
   void spheres(double mass, const void* key, std::string_view path, const std::string& load,
                std::string_view cure) {
-    if (!grading_ || !notes_.good({&s_.material.density})) return;
+    if (!model_ || !notes_.good({&s_.material.density})) return;
     const double count = modifications(s_.effects, {}).clumps.spheres() *
-                         estimated_spheres(*grading_, mass, s_.material.density);
+                         expected_spheres(model_->grading, mass, density_of(model_->material));
     if (count > kMaxSpheres)
       fail(key,
            fmt::format(
                "{}: about {:.1f} million spheres ({} of {}), more than the {:.0f} million allowed; {}, or "
                "take a grading without its finest part",
-               path, count / 1e6, load, grading_->name(), kMaxSpheres / 1e6, cure));
+               path, count / 1e6, load, model_->grading.name(), kMaxSpheres / 1e6, cure));
+  }
+
+  /// Volume (m3) of the rock of a mass (kg), without voids.
+  double rock_of(double mass) const {
+    return model_ ? solid_volume(model_->grading, mass, density_of(model_->material))
+                  : mass / s_.material.density;
   }
 
   /// A load must have a sphere.
   void smallest(double mass, const void* key, std::string_view path) {
-    if (!grading_ || !notes_.good({key, &s_.material.density})) return;
-    const double least = s_.material.density * std::numbers::pi / 6 * std::pow(grading_->min_diameter(), 3);
+    if (!model_ || !notes_.good({key, &s_.material.density})) return;
+    const double least = sphere_mass(model_->material, model_->grading.min_diameter());
     if (mass < least)
       fail(key, fmt::format("{}: {:g} kg are less than the smallest sphere of {} ({:g} m, {:g} kg)", path,
-                            mass, grading_->name(), grading_->min_diameter(), least));
+                            mass, model_->grading.name(), model_->grading.min_diameter(), least));
   }
 
   void effects() {
@@ -319,7 +325,7 @@ class Checks {
               fmt::format("{} dumps of {} t", e.dumps, e.payload / 1000), "lower payload_t or dumps");
     if (!notes_.good({&box})) return;
     if (notes_.good({&e.payload, &s_.material.density})) {
-      const double rock = e.payload / s_.material.density;
+      const double rock = rock_of(e.payload);
       if (rock > kDensestFill * box.prod())
         fail(&box,
              fmt::format(
@@ -367,7 +373,7 @@ class Checks {
   /// A cylinder (m) holds `mass` (kg).
   void container(const double& mass, double diameter, double height) {
     const double volume = std::numbers::pi / 4 * diameter * diameter * height;
-    const double rock = mass / s_.material.density;
+    const double rock = rock_of(mass);
     if (notes_.good({&s_.material.density}) && rock > kDensestFill * volume)
       fail(&mass,
            fmt::format(
@@ -377,12 +383,12 @@ class Checks {
   }
 
   void largest(double room, const void* key, std::string_view path) {
-    if (!grading_) return;
+    if (!model_) return;
     const Clumps clumps = modifications(s_.effects, {}).clumps;
-    const double length = clumps.length() * grading_->max_diameter();
+    const double length = clumps.length() * model_->grading.max_diameter();
     if (length >= room)
       fail(key, fmt::format("{}: {} m is not wider than the largest grain of {} ({} m{})", path, room,
-                            grading_->name(), length, clumps.on() ? " long" : ""));
+                            model_->grading.name(), length, clumps.on() ? " long" : ""));
   }
 
   void tools() {
@@ -449,7 +455,7 @@ class Checks {
   const ReadFor use_;
   ReadNotes& notes_;
   std::vector<std::string>& warnings_;
-  std::optional<Grading> grading_;
+  std::optional<EffectiveModel> model_;  // none if its grading cannot be read
 };
 
 }  // namespace

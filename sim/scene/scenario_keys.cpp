@@ -215,7 +215,9 @@ Fields keys(DropTest& d) {
 Fields keys(Keyframe& k) {
   return {
       {"time_s", Number{&k.time, kSecond, {0, 1e5}},
-       "Time since the start of the clock; rising along the list.", true},
+       "Time since the start of the clock; rising along the list. The run lasts until the last tool has come "
+       "to rest.",
+       true},
       {"position_m", Vector{&k.position, kMetre, kAnywhere}, "Place of the mesh's origin: x, y, z."},
       {"rotation_deg", Vector{&k.rotation_deg, kDegree, {-36000, 36000}},
        "Rotations about the fixed axes x, y, z, in this order."},

@@ -92,7 +92,11 @@ void Stage::add_tools() {
                       Eigen::AngleAxisd(r.x(), Vec3::UnitX());
       keys.push_back({k.time, pose});
     }
-    if (keys.size() > 1) tools_end_ = std::max(tools_end_, keys.back().time);
+    for (std::size_t k = 1; k < tool.keyframes.size(); ++k) {
+      const Keyframe &before = tool.keyframes[k - 1], &now = tool.keyframes[k];
+      if (now.position != before.position || now.rotation_deg != before.rotation_deg)
+        tools_end_ = std::max(tools_end_, now.time);
+    }
     world_->add_mesh(read(tool.mesh, tool.scale), tool_surface(tool.mu, tool.mu_r), Motion(std::move(keys)));
   }
 }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <new>
 #include <stdexcept>
 
 namespace scree {
@@ -20,7 +22,20 @@ int mask_of(int group, bool bullet_moves_spheres) {
   return group == kRockGroup ? btBroadphaseProxy::AllFilter : btBroadphaseProxy::DefaultFilter | kRockGroup;
 }
 
+void* allocate(std::size_t size) {
+  if (void* const memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+
 }  // namespace
+
+BulletParts::Memory::Memory() {
+  static const bool set = [] {
+    btAlignedAllocSetCustom(allocate, std::free);
+    return true;
+  }();
+  static_cast<void>(set);
+}
 
 RockWorld::RockWorld(const WorldSettings& settings)
     : btDiscreteDynamicsWorld(&dispatcher, &broadphase, &solver, &configuration), settings_(settings) {

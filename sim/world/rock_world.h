@@ -76,6 +76,10 @@ struct WorldStatistics {
 
 /// Parts a Bullet world needs before it is made.
 struct BulletParts {
+  /// Lets Bullet throw std::bad_alloc where memory runs out, which it writes to unasked.
+  struct Memory {
+    Memory();
+  } memory;
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};
   btDbvtBroadphase broadphase;

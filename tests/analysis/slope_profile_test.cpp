@@ -23,13 +23,13 @@ Grain grain(double x, double y, double z, double diameter) {
 
 // Grains of 0.2 to 0.6 m in three layers below a plane that falls at `angle` from the crest, about y0; the
 // top of the bench behind it.
-std::vector<Grain> slope(double angle, double y0, std::uint64_t seed) {
+std::vector<Grain> slope(double angle, double y0, std::uint64_t seed, double height = kHeight) {
   Random random(seed, 0, RandomPurpose::positions);
   std::vector<Grain> pile;
-  const double foot = kHeight / std::tan(angle * kRadians);
+  const double foot = height / std::tan(angle * kRadians);
   for (int k = 0; k < 60'000; ++k) {
     const double x = -6 + (foot + 6) * random.uniform(), d = 0.2 + 0.4 * random.uniform();
-    const double surface = x < 0 ? kHeight : kHeight - x * std::tan(angle * kRadians);
+    const double surface = x < 0 ? height : height - x * std::tan(angle * kRadians);
     pile.push_back(grain(x, y0 + 8 * random.uniform() - 4, surface - d / 2 - random.uniform(), d));
   }
   return pile;
@@ -61,6 +61,23 @@ TEST(SlopeProfile, BlocksOnTheFloorAndHolesAtTheirFootDoNotTiltIt) {
     for (double y = -4; y < 4; y += 0.4)
       for (double z = 0.2; z < 3; z += 0.4) pile.push_back(grain(x, y, z, 0.4));
   EXPECT_NEAR(line_of(pile)->angle, before, 0.3);
+}
+
+// A slope that ends 3 m above the floor, and rock beyond the gap as high as its end.
+TEST(SlopeProfile, EndsAtItsFirstGap) {
+  std::vector<Grain> pile = slope(37, 0, 6);
+  std::erase_if(pile, [](const Grain& g) { return g.position.x() > 7 / std::tan(37 * kRadians); });
+  const double before = line_of(pile)->angle;
+  for (double x = 12; x < 17; x += 0.3)
+    for (double y = -4; y < 4; y += 0.3) pile.push_back(grain(x, y, 2.8, 0.4));
+  EXPECT_NEAR(line_of(pile)->angle, before, 0.1);
+}
+
+// Rock 8 m wide, as layers look at, whatever the height of the bench.
+TEST(SlopeProfile, OfATallBenchIsThatOfItsMiddle) {
+  const auto line = slope_line(slope_profile(slope(37, 0, 8, 80), 80), 80);
+  ASSERT_TRUE(line);
+  EXPECT_NEAR(line->angle, 37, 0.5);
 }
 
 TEST(SlopeProfile, HasNoAngleWhereThereIsNoSlope) {

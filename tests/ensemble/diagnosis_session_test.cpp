@@ -63,8 +63,9 @@ class FormulaSimulator {
       for (int k = 0; k < 6; ++k) {
         const double normal = std::sqrt(-2 * std::log(1 - random.uniform())) *
                               std::cos(2 * std::numbers::pi * random.uniform());
-        result.outputs[names[k]] =
-            (k == 0 ? 0 : kRatios) + means[k] + (k % 3 - 1) * together * cohesion * twisting * (1 - cohesion / 4) + 0.3 * normal;
+        result.outputs[names[k]] = (k == 0 ? 0 : kRatios) + means[k] +
+                                   (k % 3 - 1) * together * cohesion * twisting * (1 - cohesion / 4) +
+                                   0.3 * normal;
         if (request.seed >
             700'000)  // those of the design are below, those of twins have a simulator of their own
           result.outputs[names[k]] += (k % 2 == 0 ? 1 : -1) * fits_are_off_by;
@@ -410,6 +411,37 @@ TEST_F(Session, EffectsThatChangeNothingAreNotSearched) {
   EXPECT_THAT(acts("experiments:\n" + gate, "undamped_flight"), testing::ElementsAre("gate"));
 }
 
+// Of an effect that a scenario has already, and of one that does not go with it, the amplitudes of the design
+// would be wrong; both are said, and so is what changes nothing.
+TEST_F(Session, EffectsThatCannotBeLookedForAreSaid) {
+  const std::string quick = (fs::path(SCREE_SOURCE_DIR) / "scenarios/quick_dump.yaml").string();
+  const std::string parameters = "parameters: {material.mu: {nominal: 0.3, from: 0.2, to: 0.4}}\n";
+  const auto space = [&](const std::string& text) {
+    write_text_file(folder / "given.yaml", parameters + text);
+    const auto loaded = load_model(folder / "given.yaml", kAssets);
+    EXPECT_TRUE(loaded.errors.empty()) << loaded.errors.front().text();
+    std::vector<Dataset::Experiment> experiments;
+    for (const ModelExperiment& each : loaded.model.experiments) experiments.push_back(each.experiment);
+    return space_of(loaded.model, experiments, {}, kAssets);
+  };
+  const auto experiment = [&](const std::string& set) {
+    return "experiments: {dump: {scenario: " + quick + ", set: {" + set + "}, observables: [chi_S1]}}\n";
+  };
+  const ModelSpace given = space("effects: [cohesion, clumps, breakage, release_speed, twisting]\n" +
+                                 experiment("effects.breakage.fragility_kg_per_j: 0.01, "
+                                            "experiment.truck.release: hoist, effects.twisting.mu_t: 0"));
+  EXPECT_THAT(given.left_out,
+              ElementsAre("clumps: experiment dump has breakage, with which it does not go",
+                          "breakage: experiment dump has it",
+                          "release_speed: changes nothing without experiment.truck.release open_gate"));
+  ASSERT_EQ(given.effects.size(), 2u) << "twisting is set to where it does nothing";
+  // Without a list all are looked for that the model does not give itself.
+  const ModelSpace all = space("set: {effects.cohesion.bond_number: 0.5}\n" + experiment(""));
+  EXPECT_EQ(all.find("cohesion"), all.effects.size());
+  EXPECT_LT(all.find("twisting"), all.effects.size());
+  EXPECT_THAT(all.left_out, Not(testing::Contains(HasSubstr("cohesion"))));
+}
+
 TEST_F(Session, ModelFilesAreChecked) {
   const auto error = [&](const std::string& text) {
     write_text_file(folder / "bad.yaml", text);
@@ -422,6 +454,15 @@ TEST_F(Session, ModelFilesAreChecked) {
   EXPECT_THAT(error("parameters: {material.mu: {nominal: 0.4, from: 0.1, to: 0.3}}\n"),
               HasSubstr("must lie between"));
   EXPECT_THAT(error("parameters: {material.mu: {from: 0.1, to: 0.3}}\n"), HasSubstr("nominal"));
+  const std::string dump = (fs::path(SCREE_SOURCE_DIR) / "scenarios/quick_dump.yaml").string();
+  EXPECT_THAT(error("parameters: {experiment.dumps: {nominal: 1, from: 1, to: 3}}\n"
+                    "experiments: {dump: {scenario: " +
+                    dump + ", observables: [chi_S1]}}\n"),
+              AllOf(HasSubstr("bad.yaml:1:14"), HasSubstr("a whole number is expected")));
+  EXPECT_THAT(
+      error(head + "experiments: {dump: {scenario: " + dump + ", observables: [simulated_seconds]}}\n"),
+      HasSubstr("says something of a run"));
+  EXPECT_THAT(error(head + "effects: []\n"), HasSubstr("found an empty list"));
   EXPECT_THAT(error(head + "effects: [cohesoin]\n"), HasSubstr("did you mean 'cohesion'"));
   EXPECT_THAT(error(head + "effects: [cohesion, cohesion]\n"), HasSubstr("stands twice"));
   EXPECT_THAT(error(head + "simulations: {effect: 2}\n"), HasSubstr("from 4 to 1000"));

@@ -305,7 +305,27 @@ TEST(Estimate, OneSizeIsMassOverTheMassOfASphere) {
   // Nearly one size: N = M / (rho pi/6 d^3) with d = 0.1 m.
   const Grading grading("one", {{0.1, 0}, {0.1000001, 1}});
   const double one = 2760 * 3.14159265358979 / 6 * 1e-3;
-  EXPECT_NEAR(estimated_spheres(grading, 1000, 2760), 1000 / one, 1e-5 * 1000 / one);
+  EXPECT_NEAR(expected_spheres(grading, 1000, {2760}), 1000 / one, 1e-5 * 1000 / one);
+}
+
+// N = integral of dP M / m(d), with m(d) = rho (d / d0)^e pi/6 d^3; V = integral of dP M / (rho (d / d0)^e).
+TEST(Estimate, RockWhoseDensityFollowsItsSize) {
+  const Grading grading("two sizes", {{0.1, 0}, {0.1000001, 0.4}, {0.4, 0.4}, {0.4000001, 1}});
+  const RockDensity density{2760, 0.5, 0.2};
+  double spheres = 0, volume = 0;
+  for (const auto& [d, mass] : {std::pair{0.1, 400.0}, std::pair{0.4, 600.0}}) {
+    const double here = 2760 * std::sqrt(d / 0.2);
+    volume += mass / here;
+    spheres += mass / (here * std::numbers::pi / 6 * d * d * d);
+  }
+  EXPECT_NEAR(expected_spheres(grading, 1000, density), spheres, 1e-5 * spheres);
+  EXPECT_NEAR(solid_volume(grading, 1000, density), volume, 1e-5 * volume);
+  const Grading wide("wide", {{0.06, 0}, {3, 1}});
+  for (const double exponent : {-0.5, 0.0, 0.5}) {
+    const RockDensity each{2760, exponent, 0.4};
+    const auto made = static_cast<double>(generate_diameters(wide, 60000, each, 1, 1).size());
+    EXPECT_NEAR(made, expected_spheres(wide, 60000, each), 0.02 * made) << exponent;
+  }
 }
 
 TEST(Scenarios, EveryFileOfTheProjectLoads) {
