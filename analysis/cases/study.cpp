@@ -97,7 +97,8 @@ std::vector<std::string> study_in_words(const std::vector<StudyOption>& options,
   const std::vector<StudyRank> ranks = rank_options(options, criterion);
   for (const StudyRank& rank : ranks) {
     if (!rank.rank) {
-      lines.push_back(fmt::format("{}: {:.3g} ({})", options[rank.option].name, rank.value.mean, kNotRanked));
+      lines.push_back(fmt::format("{}: {:.3g} (not ranked: of one run the scatter is not known)",
+                                  options[rank.option].name, rank.value.mean));
       continue;
     }
     const auto sharing = std::count_if(ranks.begin(), ranks.end(),

@@ -47,10 +47,6 @@ std::vector<StudyRank> rank_options(const std::vector<StudyOption>& options, con
 std::vector<std::string> study_in_words(const std::vector<StudyOption>& options,
                                         const StudyCriterion& criterion);
 
-/// Why an option has no rank.
-inline constexpr const char* kNotRanked =
-    "not ranked: one seed, its scatter is not known; give seeds: [1, 2, 3]";
-
 /// Writes folder/report.html; `warnings`: of the study. Throws std::runtime_error when gnuplot is missing or
 /// fails or a file cannot be written.
 void write_study(const std::string& title, const std::string& currency,

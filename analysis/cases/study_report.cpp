@@ -18,7 +18,7 @@ std::string ranking(const std::vector<StudyOption>& options, const StudyCriterio
     const StudyOption& option = options[rank.option];
     rows += fmt::format(
         "<tr><td>{}</td><td class=\"word\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-        rank.rank ? std::to_string(*rank.rank) : kNotRanked, html_escaped(option.name),
+        rank.rank ? std::to_string(*rank.rank) : "not ranked", html_escaped(option.name),
         value_cell("", rank.value, ""), rank.p < 1 ? decimals_text(rank.p, 2) : "–",
         number_text(option.tonnes_per_load), option.cost_per_t ? number_text(*option.cost_per_t) : "–");
   }

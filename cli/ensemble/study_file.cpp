@@ -83,7 +83,9 @@ std::vector<std::string> warnings_of(const Study& study) {
   std::vector<std::string> warnings;
   for (const SweepPoint& point : study.sweep.points)
     if (point.scenario.seeds.size() < 2)
-      warnings.push_back(fmt::format("option '{}': {}", point.values.front(), kNotRanked));
+      warnings.push_back(
+          fmt::format("option '{}': not ranked: of one seed the scatter is not known; give seeds: [1, 2, 3]",
+                      point.values.front()));
   if (const std::string each =
           differences(study, [](const Scenario& s) { return static_cast<double>(s.output.sections); });
       !each.empty())

@@ -61,10 +61,8 @@ TEST(Study, OneSeedIsNotRanked) {
   EXPECT_EQ(ranks[1].rank, 2);
   EXPECT_EQ(options[ranks[2].option].name, "one") << "behind the others, though its value is the least";
   EXPECT_FALSE(ranks[2].rank.has_value());
-  EXPECT_THAT(
-      study_in_words(options, *study_criterion("chi_range")),
-      testing::Contains("one: 0.6 (not ranked: one seed, its scatter is not known; give seeds: [1, 2, "
-                        "3])"));
+  EXPECT_THAT(study_in_words(options, *study_criterion("chi_range")),
+              testing::Contains("one: 0.6 (not ranked: of one run the scatter is not known)"));
 }
 
 TEST(Study, RatiosAreToeOverCrest) {

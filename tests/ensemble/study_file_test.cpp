@@ -55,7 +55,7 @@ TEST_F(StudyFile, WhatCannotBeComparedIsWarnedOf) {
   };
   EXPECT_THAT(warnings("", "seeds: [1, 2]\n"), testing::IsEmpty());
   EXPECT_THAT(warnings("", "seeds: [1]\n"),
-              testing::ElementsAre(HasSubstr("option 'a': not ranked: one seed"), HasSubstr("option 'b'")));
+              testing::ElementsAre(HasSubstr("option 'a': not ranked: of one seed"), HasSubstr("option 'b'")));
   EXPECT_THAT(warnings(", set: {output.sections: 5}", "seeds: [1, 2]\n"),
               testing::ElementsAre(HasSubstr("output.sections, and their numbers are not alike: a 6, b 5")));
   EXPECT_THAT(warnings(", set: {experiment.bench.height_m: 12}", "seeds: [1, 2]\n"),
