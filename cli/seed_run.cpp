@@ -5,6 +5,7 @@
 #include <mutex>
 #include <new>
 #include <optional>
+#include <system_error>
 
 #include "cli/commands.h"
 #include "cli/results_of.h"
@@ -154,8 +155,17 @@ void simulate(const scree::Scenario& scenario, SeedRun& run, const SeedSettings&
   put_away();
 }
 
-constexpr const char* kNotEnoughMemory =
-    "not enough memory; run fewer seeds side by side (--threads 1), or a scenario with fewer spheres";
+// With what a user can do about it, where the error does not say so itself.
+std::string words_of(const std::exception& error) {
+  constexpr const char* kCure =
+      "run fewer seeds side by side (--threads 1), or a scenario with fewer spheres";
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr)
+    return fmt::format("not enough memory; {}", kCure);
+  const auto* of_system = dynamic_cast<const std::system_error*>(&error);
+  if (of_system != nullptr && of_system->code() == std::errc::resource_unavailable_try_again)
+    return fmt::format("not enough memory, or processes, for another thread; {}", kCure);
+  return error.what();
+}
 
 }  // namespace
 
@@ -171,14 +181,8 @@ void run_seed(const scree::Scenario& scenario, SeedRun& run, const SeedSettings&
     run.does_not_fit = true;
   } catch (const std::invalid_argument& error) {
     run.failure = error.what();
-  } catch (const std::bad_alloc&) {
-    run.failure = kNotEnoughMemory;
-    run.worth_resuming = true;
-  } catch (const std::system_error& error) {  // a thread has no room for its stack
-    run.failure = error.code() == std::errc::resource_unavailable_try_again ? kNotEnoughMemory : error.what();
-    run.worth_resuming = true;
   } catch (const std::exception& error) {
-    run.failure = error.what();
+    run.failure = words_of(error);
     run.worth_resuming = true;
   }
 }

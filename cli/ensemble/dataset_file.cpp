@@ -106,8 +106,8 @@ DatasetResult load_dataset(const fs::path& file, const fs::path& asset_dir) {
   std::vector<double> factors;
   read_observables(*table, dataset, factors, result.errors);
   if (reader.good() && covariance) read_covariance(*covariance, factors, dataset, result.errors);
-  if (reader.good()) check_bounds(*table, dataset, result.errors);
   if (reader.good()) complete_uncertainties(*table, relative, dataset, result.errors);
+  if (reader.good()) check_bounds(*table, dataset, result.errors);
   if (reader.good()) result.dataset = std::move(dataset);
   return result;
 }

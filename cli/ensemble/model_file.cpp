@@ -58,7 +58,6 @@ void read_effects(const YamlNode& root, DiagnosisModel& model, FileReader& reade
   for (const Effect& effect : all_effects()) all.emplace_back(effect.name);
   if (root.find("effects") == nullptr) {
     model.effects = all;
-    std::erase_if(model.effects, [&](const std::string& name) { return is_given(name, model); });
     return;
   }
   const YamlNode* list = reader.list_at(root, "effects", true, "a list of names");
@@ -142,6 +141,7 @@ class KeyCheck {
     if (at == nullptr) return;
     for (const YamlEntry& entry : at->value.entries) {
       check(entry);
+      if (root_.find("effects") == nullptr) continue;  // those that are given are left out
       for (const std::string& effect : model_.effects)
         if (entry.key.starts_with("effects." + effect + "."))
           reader_.fail(entry.key_place, fmt::format("{}.{}: {} is looked for, too; leave it out of `effects`",
@@ -263,7 +263,9 @@ ModelSpace space_of(const DiagnosisModel& model, const std::vector<Dataset::Expe
   for (const std::string& name : model.effects) {
     if (std::find(without.begin(), without.end(), name) != without.end()) continue;
     const Effect& effect = *find_effect(name);
-    if (const std::string why = why_not_looked_for(effect, experiments, scenarios); !why.empty()) {
+    if (const std::string why =
+            is_given(name, model) ? "the model gives it" : why_not_looked_for(effect, experiments, scenarios);
+        !why.empty()) {
       space.left_out.push_back(fmt::format("{}: {}", name, why));
       continue;
     }

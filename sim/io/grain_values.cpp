@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim/material/input_bytes.h"
+#include "sim/material/input_text.h"
 
 namespace scree {
 namespace {
@@ -49,6 +50,10 @@ int dump_of(double number, const GrainPlace& place) {
   if (!dump)
     fail(place, fmt::format("dump must be an integer from 1 to {:.0f}, found {}", kMostDumps, number));
   return static_cast<int>(*dump);
+}
+
+double velocity_in(std::string_view word) {
+  return number_in(word).value_or(0);
 }
 
 }  // namespace scree

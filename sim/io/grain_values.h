@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 
 namespace scree {
 
@@ -17,6 +18,9 @@ struct GrainPlace {
 /// The integer that a number is; none if it is no integer, or not one from `least` to `most`, which must be
 /// within 1e18.
 std::optional<std::int64_t> integer_in(double number, double least, double most);
+
+/// A velocity as it is written; 0 for what is no number, as nothing is asked of it.
+double velocity_in(std::string_view word);
 
 /// The diameter of a grain that has a diameter, a radius, or both. Throws FileError where both are there and
 /// contradict each other: a diameter that is not twice the radius to a thousandth, which is more than

@@ -157,7 +157,8 @@ RawSnapshot read_lammps_dump(const std::filesystem::path& file, std::string_view
     for (int axis = 0; axis < 3; ++axis) {
       const double value = column(columns.position[axis]);
       grain.position[axis] = columns.scaled(axis) ? low[axis] + value * length[axis] : value;
-      if (columns.velocity[axis] >= 0) grain.velocity[axis] = column(columns.velocity[axis]);
+      if (columns.velocity[axis] >= 0)
+        grain.velocity[axis] = velocity_in(words[static_cast<std::size_t>(columns.velocity[axis])]);
     }
     grain.diameter = diameter_of(column_if_any(columns.diameter), column_if_any(columns.radius), place);
     if (raw.has_mass) grain.mass = column(columns.mass);

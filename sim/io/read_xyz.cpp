@@ -137,7 +137,8 @@ RawSnapshot read_xyz(const std::filesystem::path& file, std::string_view text, s
     Grain grain;
     for (int axis = 0; axis < 3; ++axis) {
       grain.position[axis] = number(columns.position + axis);
-      if (columns.velocity >= 0) grain.velocity[axis] = number(columns.velocity + axis);
+      if (columns.velocity >= 0)
+        grain.velocity[axis] = velocity_in(words[static_cast<std::size_t>(columns.velocity + axis)]);
     }
     grain.diameter = diameter_of(number_if_any(columns.diameter), number_if_any(columns.radius), place);
     if (raw.has_mass) grain.mass = number(columns.mass);

@@ -19,7 +19,8 @@ struct VtkNumber {
 double number_from(const char* bytes, VtkNumber kind, std::endian order);
 
 /// Points of a file: a run may have 2 million (kMaxSpheres), piles of other programs may be larger. With it
-/// memory is bounded by some 110 bytes a point, however few bytes a file of them is packed into.
+/// memory is bounded by some 110 bytes a point (170 where there are several pieces), however few bytes a file
+/// of them is packed into.
 inline constexpr std::size_t kMostPoints = 5'000'000;
 
 /// Grains out of points and their arrays, piece by piece; a legacy file is one piece. Values go into the

@@ -141,8 +141,8 @@ double mean_inverse_power(const Grading& grading, double power) {
   const auto& points = grading.points();
   for (std::size_t i = 1; i < points.size(); ++i) {
     const double a = points[i - 1].diameter, b = points[i].diameter;
-    const double mean =
-        power == 0 ? 1 : (std::pow(a, -power) - std::pow(b, -power)) / (power * std::log(b / a));
+    const double stretch = power * std::log(b / a);  // expm1: no cancellation for small powers
+    const double mean = stretch == 0 ? 1 : -std::expm1(-stretch) / stretch * std::pow(a, -power);
     sum += (points[i].passing - points[i - 1].passing) * mean;
   }
   return sum;

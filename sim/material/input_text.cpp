@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 namespace scree {
 namespace {
@@ -86,31 +87,6 @@ DelimitedTable::DelimitedTable(const std::filesystem::path& file, std::uintmax_t
     if (!header_[k].empty() && column(header_[k]) != k)
       fail(fmt::format("the column {} stands twice in the header", in_quotes(header_[k])));
   }
-  if (separator_ == ';' || separator_ == '\t') mixed_ = has_points_and_commas();
-}
-
-bool DelimitedTable::has_points_and_commas() {
-  if (text_.find(',', at_) == std::string::npos) return false;
-  struct Column {
-    bool numbers = true, points = false, commas = false;
-  };
-  std::vector<Column> columns(header_.size());
-  const std::size_t at = at_;
-  const int line = line_, row_line = row_line_;
-  while (read_row())
-    for (std::size_t k = 0; k < std::min(used_, columns.size()); ++k) {
-      const std::string& field = fields_[k];
-      Column& column = columns[k];
-      if (!column.numbers || field.empty()) continue;
-      column.numbers = number_in(field, true).has_value();
-      column.points = column.points || field.find('.') != std::string::npos;
-      column.commas = column.commas || field.find(',') != std::string::npos;
-    }
-  at_ = at, line_ = line, row_line_ = row_line;
-  const auto any = [&](bool Column::*mark) {
-    return std::any_of(columns.begin(), columns.end(), [&](const Column& c) { return c.numbers && c.*mark; });
-  };
-  return any(&Column::points) && any(&Column::commas);
 }
 
 std::optional<std::size_t> DelimitedTable::column(std::string_view name) const {
@@ -135,20 +111,35 @@ bool DelimitedTable::next() {
 std::optional<double> DelimitedTable::number(std::size_t column) const {
   const std::string& text = fields_[column];
   if (text.empty()) return std::nullopt;
-  const auto value = number_in(text, separator_ == ';' || separator_ == '\t');
-  if (value && mixed_ && may_be_a_thousand(text)) {
-    std::string whole = text;
-    whole.erase(whole.find_first_of(".,"), 1);
-    fail(fmt::format(
-        "{}: {}: is it {} or {}? the table has decimal points and decimal commas; write all numbers with one "
-        "of them and without a thousands separator",
-        header_[column], in_quotes(text), whole, *value));
+  const bool commas = separator_ == ';' || separator_ == '\t';
+  if (const auto value = number_in(text, commas)) {
+    if (commas) check_mark(column);
+    return value;
   }
-  if (value) return value;
   const std::string word = in_small_letters(text);
   if (word == "nan" || word == "inf" || word == "-inf" || word == "infinity" || word == "-nan")
     fail(fmt::format("{}: {} is not finite", header_[column], text));
   fail(fmt::format("{}: {} is no number", header_[column], in_quotes(text)));
+}
+
+void DelimitedTable::check_mark(std::size_t column) const {
+  const std::string& text = fields_[column];
+  const auto at = text.find_first_of(".,");
+  if (at == std::string::npos) return;
+  Marked& own = text[at] == ',' ? commas_ : points_;
+  if (own.first.line == 0) own.first = {row_line_, column, text};
+  if (own.doubtful.line == 0 && may_be_a_thousand(text)) own.doubtful = {row_line_, column, text};
+  for (const auto& [doubtful, other] :
+       {std::pair(&points_.doubtful, &commas_.first), std::pair(&commas_.doubtful, &points_.first)}) {
+    if (doubtful->line == 0 || other->line == 0) continue;
+    std::string whole = doubtful->text;
+    whole.erase(whole.find_first_of(".,"), 1);
+    throw FileError(file_, doubtful->line,
+                    fmt::format("{}: {}: is it {} or {}? line {} has {}; write all numbers with the same "
+                                "decimal mark and without a thousands separator",
+                                header_[doubtful->column], in_quotes(doubtful->text), whole,
+                                *number_in(doubtful->text, true), other->line, in_quotes(other->text)));
+  }
 }
 
 std::optional<char> DelimitedTable::read_separator() {

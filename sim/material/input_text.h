@@ -44,16 +44,16 @@ class DelimitedTable {
   std::optional<std::size_t> column(std::string_view name) const;
   bool next();  ///< goes to the next row; false after the last. Throws unless it has a field a column
   const std::string& field(std::size_t column) const { return fields_[column]; }  ///< without blanks around
-  /// The number in a field; none if it is empty. Throws if it is no number, and in a table whose numbers have
-  /// decimal commas and decimal points for 1.210 and 1,210: either may be a thousand.
+  /// The number in a field; none if it is empty. Throws if it is no number, and where the numbers asked
+  /// for have decimal commas and decimal points for 1.210 and 1,210: either may be a thousand.
   std::optional<double> number(std::size_t column) const;
   int line() const { return row_line_; }  ///< where this row begins
   int header_line() const { return header_line_; }
   [[noreturn]] void fail(const std::string& message) const { throw FileError(file_, row_line_, message); }
 
  private:
-  std::optional<char> read_separator();  // that of a line `sep=;`, which is passed over
-  bool has_points_and_commas();          // in the rows from here on
+  std::optional<char> read_separator();       // that of a line `sep=;`, which is passed over
+  void check_mark(std::size_t column) const;  // of the number in a field
   void keep_comment(std::string_view line);
   bool read_row();
   bool go_to_text();  // to the next line that says something
@@ -64,7 +64,15 @@ class DelimitedTable {
   std::size_t at_ = 0;
   int line_ = 1, row_line_ = 1, header_line_ = 1;
   char separator_ = ',';  // ' ': blanks
-  bool mixed_ = false;    // some numbers have a decimal comma, others a point
+  // Where the first number with a mark stands, and the first whose mark may separate thousands.
+  struct Marked {
+    struct Place {
+      int line = 0;
+      std::size_t column = 0;
+      std::string text;
+    } first, doubtful;
+  };
+  mutable Marked points_, commas_;  // of the numbers asked for
   std::vector<Comment> comments_;
   std::vector<std::string> header_, fields_;
   std::size_t used_ = 0;  // of fields_, in this row

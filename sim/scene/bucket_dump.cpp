@@ -17,7 +17,7 @@ namespace {
 constexpr double kSettle = 0.3;      // s that a load lies behind the lid
 constexpr double kLid = 0.02;        // thickness of the lid, m
 constexpr double kClearance = 0.01;  // of the lip from the wall, m
-constexpr double kAcceleration = 1;  // m/s2, of a bucket that is pulled back with rock in it
+constexpr double kAcceleration = 1;  // m/s2, of a bucket that is lifted with rock in it
 constexpr double kSpeed = 0.5;       // m/s, of it
 
 // Bucket frame: z from its bottom to its mouth. Tilted by `tilt_deg` to the horizontal, mouth down and away
@@ -35,7 +35,7 @@ Pose bucket_pose(const BucketDump& e) {
 RunOutcome run_bucket_dump(const Scenario& scenario, const BucketDump& e, std::uint64_t seed, int threads,
                            const RunHooks& hooks) {
   const double r = e.floor_radius, back = e.diameter + e.height;
-  Stage stage(scenario, seed, threads, hooks, {-back - e.height, -r, -0.5 * e.wall_height},
+  Stage stage(scenario, seed, threads, hooks, {-back, -r, -0.5 * e.wall_height},
               {r, r, 2 * e.wall_height + 3 * e.height + e.diameter});
   RockWorld& world = stage.world();
   const Pose pose = bucket_pose(e);
@@ -65,11 +65,7 @@ RunOutcome run_bucket_dump(const Scenario& scenario, const BucketDump& e, std::u
     if (!stage.advance(kSettle, "settling", share, share + 0.1 * part)) return stage.finish();
     world.remove_mesh(lid);
     if (!stage.advance_to_rest("emptying", share + 0.1 * part, share + part)) return stage.finish();
-    const Departure leaves{{{bucket, pose}},
-                           pose.rotation * Vec3(0, 0, -e.height),
-                           kAcceleration,
-                           kSpeed,
-                           [&](const Vec3& place) {
+    const Departure leaves{bucket, pose, Vec3(0, 0, e.height), kAcceleration, kSpeed, [&](const Vec3& place) {
                              const Vec3 here = pose.to_local(place);
                              return here.z() >= 0 && here.z() <= e.height &&
                                     std::hypot(here.x(), here.y()) <= 0.5 * e.diameter;

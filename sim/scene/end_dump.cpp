@@ -62,8 +62,7 @@ std::vector<TriangleMesh> guard(const Vec3& box, double height) {
 // near to the end of the bench top that what falls from it is lost.
 double way_off(const EndDump& e) {
   constexpr double kMargin = 2;  // m
-  const double length = e.truck.load_box.x();
-  return std::clamp(e.bench.top_length - e.truck.setback - kMargin, 0.5 * length, length);
+  return std::clamp(e.bench.top_length - e.truck.setback - kMargin, 0.0, e.truck.load_box.x());
 }
 
 }  // namespace
@@ -121,16 +120,12 @@ RunOutcome run_end_dump(const Scenario& scenario, const EndDump& e, std::uint64_
     }
     if (!stage.advance_to_rest("dumping", emptied, share + 0.95 * part)) return stage.finish();
     const Pose tilted = truck_pose(e, y, e.truck.tilt_deg);
-    Departure truck{{{bed, tilted}},
-                    Vec3(-way_off(e), 0, 0),
-                    kAcceleration,
-                    kSpeed,
-                    in_bed(tilted, e.truck.load_box, std::max(height, e.truck.load_box.z()))};
-    if (e.truck.release == Release::hoist)
-      truck.parts.push_back({gate, hanging_gate(e, y, e.truck.tilt_deg)});
+    const Departure truck{
+        bed,           tilted, Vec3(-way_off(e), 0, 0),
+        kAcceleration, kSpeed, in_bed(tilted, e.truck.load_box, std::max(height, e.truck.load_box.z()))};
+    if (e.truck.release == Release::hoist) world.remove_mesh(gate);  // rigid, it would take the heap with it
     if (!stage.leave_with_tool(truck, share + 0.95 * part, share + 0.95 * part)) return stage.finish();
     world.remove_mesh(bed);
-    if (e.truck.release == Release::hoist) world.remove_mesh(gate);
     if (!stage.advance(kBedLeaves, "truck leaves", share + 0.95 * part, share + part)) return stage.finish();
     if (!stage.advance_to_rest("truck leaves", share + part, share + part)) return stage.finish();
     stage.dump_done(dump, e.dumps);

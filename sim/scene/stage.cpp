@@ -141,15 +141,13 @@ bool Stage::leave_with_tool(const Departure& departure, double share_now, double
     const double passed = 0.5 * departure.acceleration * ramp * ramp + departure.speed * (t - ramp);
     track.emplace_back(t, std::min(passed, length));
   }
-  for (const Departure::Part& part : departure.parts) {
-    std::vector<Motion::Key> keys;
-    for (const auto& [t, passed] : track) {
-      Pose pose = part.pose;
-      pose.position += passed / length * departure.way;
-      keys.push_back({start + t, pose});
-    }
-    world_->set_mesh_motion(part.mesh, Motion(std::move(keys)));
+  std::vector<Motion::Key> keys;
+  for (const auto& [t, passed] : track) {
+    Pose pose = departure.pose;
+    if (length > 0) pose.position += passed / length * departure.way;
+    keys.push_back({start + t, pose});
   }
+  world_->set_mesh_motion(departure.mesh, Motion(std::move(keys)));
   if (!advance(track.back().first, "leaving", share_now, share_then)) return false;
   if (!replaying())  // else it comes with the saved state
     outcome_.carried_back +=

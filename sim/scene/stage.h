@@ -10,11 +10,8 @@ namespace scree {
 
 /// How a truck or a bucket leaves.
 struct Departure {
-  struct Part {
-    int mesh;
-    Pose pose;  ///< where it stands
-  };
-  std::vector<Part> parts;
+  int mesh;
+  Pose pose;                                      ///< where it stands
   Vec3 way;                                       ///< m
   double acceleration;                            ///< m/s2
   double speed;                                   ///< m/s, at most
@@ -67,8 +64,8 @@ class Stage {
   bool advance_to_rest(const char* stage, double share_now, double share_then);
 
   void set_dump(int dump, int dumps) { progress_.dump = dump, progress_.dumps = dumps; }
-  /// A tool that held a load leaves. Where there is rock in it still, its parts move off, so that what the
-  /// heap before it held back runs out, and what is in it at the end is taken along (carried_back). False
+  /// A tool that held a load leaves. Where there is rock in it still, it moves off, so that what the heap
+  /// before it held back runs out, and what is in it at the end is taken along (carried_back). False
   /// when the user ended the run.
   bool leave_with_tool(const Departure& departure, double share_now, double share_then);
   /// The load of this number is at rest and its truck gone: keeps the pile if it was asked for.

@@ -37,5 +37,30 @@ TEST(BucketDump, RockFallsInFrontOfTheWallAndBucketsFollowOneAnother) {
   EXPECT_NEAR(mass, 12, 0.06);
 }
 
+// Rock that is still in a bucket when all is at rest, as it sticks or as the heap holds it back, falls in
+// front of the wall when the bucket is lifted, or leaves with it.
+TEST(BucketDump, WhatIsLeftInABucketDoesNotFallOnTheWall) {
+  const std::filesystem::path source = SCREE_SOURCE_DIR;
+  const std::vector<std::string> small{"grading=Lab0_16mm", "experiment.buckets=2", "experiment.mass_kg=6"};
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"effects.sticky_tools.bond_number=3"},
+        std::vector<std::string>{"experiment.floor.wall_height_m=0.1", "material.mu=0.5",
+                                 "material.mu_r=0.5"}}) {
+    std::vector<std::string> overrides = small;
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    const ScenarioResult loaded =
+        load_scenario(source / "scenarios" / "thesis" / "lab_segregation.yaml", overrides, source / "assets");
+    ASSERT_TRUE(loaded.errors.empty()) << loaded.errors.front().text();
+    const RunOutcome outcome = run_scenario(loaded.scenario, 1, 1, {});
+    double on_wall = 0, mass = 0;
+    for (const Grain& grain : outcome.final_state.grains) {
+      mass += grain.mass;
+      if (grain.position.x() < 0) on_wall += grain.mass;
+    }
+    EXPECT_LT(on_wall, 0.02 * mass) << more.front();  // a heap as high as the wall spills over it
+    EXPECT_NEAR(mass + outcome.carried_back + outcome.statistics.lost_mass, 12, 0.06) << more.front();
+  }
+}
+
 }  // namespace
 }  // namespace scree

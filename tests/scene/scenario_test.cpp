@@ -321,6 +321,7 @@ TEST(Estimate, RockWhoseDensityFollowsItsSize) {
   EXPECT_NEAR(expected_spheres(grading, 1000, density), spheres, 1e-5 * spheres);
   EXPECT_NEAR(solid_volume(grading, 1000, density), volume, 1e-5 * volume);
   const Grading wide("wide", {{0.06, 0}, {3, 1}});
+  for (const double power : {0.0, 1e-17, 1e-12}) EXPECT_NEAR(mean_inverse_power(wide, power), 1, 1e-11);
   for (const double exponent : {-0.5, 0.0, 0.5}) {
     const RockDensity each{2760, exponent, 0.4};
     const auto made = static_cast<double>(generate_diameters(wide, 60000, each, 1, 1).size());
