@@ -47,7 +47,7 @@ class BoundCheck {
     const auto& experiment = dataset_.experiments[row.experiment].scenario.experiment;
     std::smatch parts;
     if (std::regex_match(row.output, parts, diameter))
-      check_diameter(row, std::stod(parts[1]), parts[2], known.grading);
+      return check_diameter(row, std::stod(parts[1]), parts[2], known.grading);
     const double error = kErrors * row.uncertainty;  // a value near a bound may lie beyond it
     if (std::regex_match(row.output, share)) {
       if (row.value < -error || row.value > 1 + error) fail(row, "lies between 0 and 1");

@@ -129,16 +129,17 @@ void DelimitedTable::check_mark(std::size_t column) const {
   Marked& own = text[at] == ',' ? commas_ : points_;
   if (own.first.line == 0) own.first = {row_line_, column, text};
   if (own.doubtful.line == 0 && may_be_a_thousand(text)) own.doubtful = {row_line_, column, text};
-  for (const auto& [doubtful, other] :
-       {std::pair(&points_.doubtful, &commas_.first), std::pair(&commas_.doubtful, &points_.first)}) {
-    if (doubtful->line == 0 || other->line == 0) continue;
-    std::string whole = doubtful->text;
+  for (const auto& [marked, other] :
+       {std::pair(&points_, &commas_.first), std::pair(&commas_, &points_.first)}) {
+    if (marked->doubtful.line == 0 || other->line == 0) continue;
+    const Marked::Place doubtful = std::exchange(marked->doubtful, {});  // said once
+    std::string whole = doubtful.text;
     whole.erase(whole.find_first_of(".,"), 1);
-    throw FileError(file_, doubtful->line,
+    throw FileError(file_, doubtful.line,
                     fmt::format("{}: {}: is it {} or {}? line {} has {}; write all numbers with the same "
                                 "decimal mark and without a thousands separator",
-                                header_[doubtful->column], in_quotes(doubtful->text), whole,
-                                *number_in(doubtful->text, true), other->line, in_quotes(other->text)));
+                                header_[doubtful.column], in_quotes(doubtful.text), whole,
+                                *number_in(doubtful.text, true), other->line, in_quotes(other->text)));
   }
 }
 
