@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <numeric>
 
 #include "scree_version.h"
+#include "sim/io/state_stream.h"
 #include "sim/scene/run.h"
 
 namespace scree {
@@ -87,6 +89,47 @@ TEST(EndDump, TheHeapStaysWhereTheTruckLeavesIt) {
   };
   EXPECT_LT(behind("open_gate"), 0.02);
   EXPECT_LT(behind("hoist"), 0.02);
+}
+
+// A run that is saved while a truck leaves with rock in its bed, and taken up again, ends with the same bits.
+TEST(EndDump, IsTakenUpWhileATruckLeaves) {
+  const std::filesystem::path source = SCREE_SOURCE_DIR;
+  const ScenarioResult loaded =
+      load_scenario(source / "scenarios" / "small_dump.yaml",
+                    {"effects.sticky_tools.bond_number=2", "experiment.dumps=2"}, source / "assets");
+  std::vector<std::string> saved;  // states
+  std::string stage;
+  RunHooks hooks;
+  hooks.progress = [&](const RunProgress& progress) {
+    stage = progress.stage;
+    return true;
+  };
+  hooks.save_due = [&] { return stage == "leaving" || stage == "truck leaves"; };
+  hooks.save = [&](double, const std::function<void(StateWriter&)>& write) {
+    std::string& state = saved.emplace_back();
+    StateWriter writer(
+        [&](const void* data, std::size_t size) { state.append(static_cast<const char*>(data), size); });
+    write(writer);
+  };
+  const RunOutcome whole = run_scenario(loaded.scenario, 10001, 1, hooks);
+  ASSERT_GT(whole.carried_back, 0);
+  ASSERT_GT(saved.size(), 20u);
+  for (std::size_t k = 0; k < saved.size(); k += saved.size() / 8) {
+    std::size_t at = 0;
+    StateReader reader(
+        [&](void* data, std::size_t size) {
+          std::memcpy(data, saved[k].data() + at, size);
+          at += size;
+        },
+        saved[k].size());
+    RunHooks again;
+    again.resume = &reader;
+    const RunOutcome resumed = run_scenario(loaded.scenario, 10001, 1, again);
+    EXPECT_EQ(resumed.carried_back, whole.carried_back) << k;
+    ASSERT_EQ(resumed.final_state.grains.size(), whole.final_state.grains.size()) << k;
+    for (std::size_t i = 0; i < whole.final_state.grains.size(); ++i)
+      ASSERT_EQ(resumed.final_state.grains[i].position, whole.final_state.grains[i].position) << k;
+  }
 }
 
 TEST(EndDump, ClumpsAreCarriedBackWhole) {
