@@ -215,9 +215,7 @@ Fields keys(DropTest& d) {
 Fields keys(Keyframe& k) {
   return {
       {"time_s", Number{&k.time, kSecond, {0, 1e5}},
-       "Time since the start of the clock; rising along the list. The run lasts until the last tool has come "
-       "to rest.",
-       true},
+       "Time since the start of the clock; rising along the list.", true},
       {"position_m", Vector{&k.position, kMetre, kAnywhere}, "Place of the mesh's origin: x, y, z."},
       {"rotation_deg", Vector{&k.rotation_deg, kDegree, {-36000, 36000}},
        "Rotations about the fixed axes x, y, z, in this order."},
@@ -377,7 +375,8 @@ Fields scenario_keys(Scenario& s) {
                  [&s] { return s.tools.size(); },
                  [&s](std::size_t i) { return keys(s.tools[i]); },
                  {0, 50}},
-       "Meshes in the scene, fixed or moved by keyframes."},
+       "Meshes in the scene, fixed or moved by keyframes; the run lasts until the last of them has come to "
+       "rest."},
       {"effects", effects(s),
        "Physics that the base model lacks, each effect with its parameters (engine rrlinear); see "
        "docs/effects.md."},
