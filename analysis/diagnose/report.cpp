@@ -507,7 +507,7 @@ void write_diagnosis(const DiagnosisOrigin& origin, const DiagnosisOutcome& o, c
   const fs::path pictures = folder / "pictures";
   fs::create_directories(pictures);
   const std::vector<std::string> words = diagnosis_in_words(o);
-  std::string body = origin_table(origin);
+  std::string body;
   for (std::size_t k = 0; k < words.size(); ++k)
     body += k == 0 ? fmt::format("<p><strong>{}</strong></p>\n", html_escaped(words[k]))
                    : fmt::format("<p>{}</p>\n", html_escaped(words[k]));
@@ -518,12 +518,16 @@ void write_diagnosis(const DiagnosisOrigin& origin, const DiagnosisOutcome& o, c
     for (const std::string& note : o.notes) body += fmt::format("<li>{}</li>\n", html_escaped(note));
     body += "</ul>\n";
   }
-  write_text_file(
-      folder / "report.html",
-      html_page(origin.title,
-                fmt::format("Measured numbers: {}, effects looked for: {}, simulations: {}",
-                            o.diagnosis.measured.values.size(), o.space.effects.size(), o.simulations),
-                body));
+  body += "<h2>Where it comes from</h2>\n" + origin_table(origin);
+  std::string measurements;
+  for (const DiagnosisOrigin::Data& each : origin.data)
+    measurements += (measurements.empty() ? "" : ", ") + each.title;
+  write_text_file(folder / "report.html",
+                  html_page(origin.title,
+                            fmt::format("{}. Measured numbers: {}, effects looked for: {}, simulations: {}",
+                                        html_escaped(measurements), o.diagnosis.measured.values.size(),
+                                        o.space.effects.size(), o.simulations),
+                            body));
 }
 
 }  // namespace scree
