@@ -522,12 +522,12 @@ void write_diagnosis(const DiagnosisOrigin& origin, const DiagnosisOutcome& o, c
   std::string measurements;
   for (const DiagnosisOrigin::Data& each : origin.data)
     measurements += (measurements.empty() ? "" : ", ") + each.title;
-  write_text_file(folder / "report.html",
-                  html_page(origin.title,
-                            fmt::format("{}. Measured numbers: {}, effects looked for: {}, simulations: {}",
-                                        html_escaped(measurements), o.diagnosis.measured.values.size(),
-                                        o.space.effects.size(), o.simulations),
-                            body));
+  write_text_file(
+      folder / "report.html",
+      html_page(origin.title,
+                fmt::format("{}. Measured numbers: {}, effects looked for: {}, simulations: {}", measurements,
+                            o.diagnosis.measured.values.size(), o.space.effects.size(), o.simulations),
+                body));
 }
 
 }  // namespace scree
