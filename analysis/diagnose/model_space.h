@@ -61,10 +61,15 @@ struct ModelPoint {
   std::vector<EffectAt> effects;  ///< by rising index
 };
 
+/// An effect that is not looked for.
+struct LeftOut {
+  std::string effect, why;  ///< "experiment dump has it"
+};
+
 struct ModelSpace {
   std::vector<BaseAxis> base;
   std::vector<CandidateEffect> effects;
-  std::vector<std::string> left_out = {};  ///< effects that are not looked for: "hoist: why"
+  std::vector<LeftOut> left_out = {};
 
   /// Largest difference of a coordinate, for amplitudes of that and of how far along they are; infinite
   /// between models of different effects. Amplitudes below a hundredth of the range are all the same.

@@ -241,7 +241,8 @@ DiagnosisSession::DiagnosisSession(const DiagnosisModel& model, JoinedData data,
       asset_dir_(std::move(asset_dir)),
       threads_(threads),
       space_(space_of(model, data_.experiments, without, asset_dir_)) {
-  for (const std::string& why : space_.left_out) data_.notes.push_back("not looked for: " + why);
+  for (const auto& [effect, why] : space_.left_out)
+    data_.notes.push_back(fmt::format("not looked for: {}: {}", effect, why));
   if (data_.measured.values.size() <= space_.base.size())
     data_.notes.push_back(fmt::format(
         "{} and {}: these alone can explain almost anything, so that no effect can be named; measure more",

@@ -163,13 +163,11 @@ class KeyCheck {
   std::vector<std::string> bad_;  // parameters
 };
 
-// Why an effect cannot be looked for in these experiments: one of them has it, or one that it does not go
-// with, or it acts in none.
-std::string why_not_looked_for(const Effect& effect, const std::vector<Dataset::Experiment>& experiments,
-                               const std::vector<Scenario>& scenarios) {
-  std::string inert;
-  bool acts = false;
-  for (std::size_t e = 0; e < experiments.size(); ++e) {
+// Why the amplitudes of an effect would be wrong in these experiments: one of them has it already, or one
+// that it does not go with. Empty: they would not.
+std::string why_not_added(const Effect& effect, const std::vector<Dataset::Experiment>& experiments,
+                          const std::vector<Scenario>& scenarios) {
+  for (std::size_t e = 0; e < experiments.size(); ++e)
     for (const EffectUse& use : scenarios[e].effects) {
       if (use.values.front() == use.effect->absent) continue;
       if (use.effect == &effect) return fmt::format("experiment {} has it", experiments[e].name);
@@ -177,11 +175,7 @@ std::string why_not_looked_for(const Effect& effect, const std::vector<Dataset::
         return fmt::format("experiment {} has {}, with which it does not go", experiments[e].name,
                            use.effect->name);
     }
-    const std::string why = why_inert(effect, effect_scene(scenarios[e]));
-    acts = acts || why.empty();
-    if (inert.empty()) inert = why;
-  }
-  return acts ? "" : "changes nothing " + inert;
+  return "";
 }
 
 }  // namespace
@@ -263,26 +257,26 @@ ModelSpace space_of(const DiagnosisModel& model, const std::vector<Dataset::Expe
   for (const std::string& name : model.effects) {
     if (std::find(without.begin(), without.end(), name) != without.end()) continue;
     const Effect& effect = *find_effect(name);
-    if (const std::string why =
-            is_given(name, model) ? "the model gives it" : why_not_looked_for(effect, experiments, scenarios);
-        !why.empty()) {
-      space.left_out.push_back(fmt::format("{}: {}", name, why));
-      continue;
-    }
+    std::string why =
+        is_given(name, model) ? "the model gives it" : why_not_added(effect, experiments, scenarios);
+    std::vector<std::string> acts;
+    for (std::size_t e = 0; e < experiments.size() && why.empty(); ++e)
+      if (why_inert(effect, effect_scene(scenarios[e])).empty()) acts.push_back(experiments[e].name);
+    if (why.empty() && acts.empty() && !experiments.empty())
+      why = "changes nothing " + why_inert(effect, effect_scene(scenarios.front()));
+    if (!why.empty()) space.left_out.push_back({name, std::move(why)});
+    if (acts.empty()) continue;
     CandidateEffect candidate{name,
                               std::string(effect.title),
                               effect.absent,
                               {},
-                              {},
+                              std::move(acts),
                               effect.measures,
                               std::string(effect.excludes)};
     for (const EffectParameter& p : effect.parameters)
       if (candidate.axes.empty() || p.prior_low < p.prior_high)
         candidate.axes.push_back(
             {fmt::format("effects.{}.{}", name, p.key), std::string(p.unit), p.prior_low, p.prior_high});
-    for (std::size_t e = 0; e < experiments.size(); ++e)
-      if (why_inert(effect, effect_scene(scenarios[e])).empty())
-        candidate.acts.push_back(experiments[e].name);
     space.effects.push_back(std::move(candidate));
   }
   return space;

@@ -190,13 +190,6 @@ class TwinMaker {
     return runs_of(model_, space_, made, runs, asset_dir_);
   }
 
-  // ": why", where it is known.
-  std::string why_left_out(const std::string& effect) const {
-    for (const std::string& why : space_.left_out)
-      if (why.starts_with(effect + ": ")) return why.substr(effect.size());
-    return "";
-  }
-
   // How strong an effect is about these base parameters, by simulations with and without it, of the same
   // seeds; none where too few of them give a measurement.
   std::optional<double> strength_of(const EffectAt& there, const Eigen::VectorXd& base) const {
@@ -235,9 +228,13 @@ class TwinMaker {
   // where the effect is too weak that way, it is the other.
   std::pair<EffectAt, double> hide(const std::string& name, const Eigen::VectorXd& base) {
     const std::size_t e = space_.find(name);
-    if (e == space_.effects.size())
-      throw std::runtime_error(
-          fmt::format("effect {} cannot be hidden in the model's experiments{}", name, why_left_out(name)));
+    if (e == space_.effects.size()) {
+      const auto& all = space_.left_out;
+      const auto left_out =
+          std::find_if(all.begin(), all.end(), [&](const LeftOut& l) { return l.effect == name; });
+      throw std::runtime_error(fmt::format("effect {} cannot be hidden in the model's experiments{}", name,
+                                           left_out == all.end() ? "" : ": " + left_out->why));
+    }
     const CandidateEffect& effect = space_.effects[e];
     const double ends[] = {effect.lowest(), effect.highest()};
     double sign = random_.uniform() < 0.5 ? -1 : 1;

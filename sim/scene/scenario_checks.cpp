@@ -89,7 +89,7 @@ class Checks {
   void spheres(double mass, const void* key, std::string_view path, const std::string& load,
                std::string_view cure) {
     if (!model_ || !notes_.good({&s_.material.density})) return;
-    const double count = modifications(s_.effects, {}).clumps.spheres() *
+    const double count = model_->changes.clumps.spheres() *
                          expected_spheres(model_->grading, mass, density_of(model_->material));
     if (count > kMaxSpheres)
       fail(key,
@@ -384,7 +384,7 @@ class Checks {
 
   void largest(double room, const void* key, std::string_view path) {
     if (!model_) return;
-    const Clumps clumps = modifications(s_.effects, {}).clumps;
+    const Clumps& clumps = model_->changes.clumps;
     const double length = clumps.length() * model_->grading.max_diameter();
     if (length >= room)
       fail(key, fmt::format("{}: {} m is not wider than the largest grain of {} ({} m{})", path, room,
