@@ -67,8 +67,9 @@ void print_plan(const scree::DiagnosisSession& session, const scree::ResultsStor
       known = to_come.empty() && known;
   }
   fmt::print(
-      "{} simulations, {} of them in the store; then one to {} rounds of up to {} about what may be named\n",
-      all, there, session.most_rounds(), session.most_in_a_round());
+      "{} simulations, {} of them in the store; then one to {} rounds of up to {} about what may be named, and "
+      "last {} of each model that the answer shows if its fit has moved\n",
+      all, there, session.most_rounds(), session.most_in_a_round(), session.of_a_model());
   for (const std::string& note : session.data().notes) fmt::print("note: {}\n", note);
   if (known)
     fmt::print("about {} are left, one run after another\n", scree::spell_duration(left));

@@ -75,6 +75,19 @@ void read_piles(const ModelSpace& space, const SimulationCounts& counts,
   }
 }
 
+// What the model says of a key that the experiment sets otherwise: the model's word is taken.
+std::vector<std::string> set_aside(const DiagnosisModel& model, const Dataset::Experiment& experiment) {
+  const std::vector<std::string>& fixed = model.variation.fixed;
+  std::vector<std::string> notes;
+  for (const std::string& each : experiment.overrides) {
+    const std::string key = each.substr(0, each.find('='));
+    if (model.places.contains(key) && std::find(fixed.begin(), fixed.end(), each) == fixed.end())
+      notes.push_back(
+          fmt::format("experiment {} sets {}; what the model says of {} is taken", experiment.name, each, key));
+  }
+  return notes;
+}
+
 bool same(const DiagnosisVerdict& a, const DiagnosisVerdict& b, const Diagnosis& of_a,
           const Diagnosis& of_b) {
   if (a.kind != b.kind || a.named.size() != b.named.size()) return false;
@@ -241,6 +254,8 @@ DiagnosisSession::DiagnosisSession(const DiagnosisModel& model, JoinedData data,
       asset_dir_(std::move(asset_dir)),
       threads_(threads),
       space_(space_of(model, data_.experiments, without, asset_dir_)) {
+  for (const Dataset::Experiment& experiment : data_.experiments)
+    for (std::string& note : set_aside(model, experiment)) data_.notes.push_back(std::move(note));
   for (const auto& [effect, why] : space_.left_out)
     data_.notes.push_back(fmt::format("not looked for: {}: {}", effect, why));
   if (data_.measured.values.size() <= space_.base.size())
@@ -271,9 +286,12 @@ int DiagnosisSession::most_rounds() const {
 int DiagnosisSession::most_in_a_round() const {
   // The calibrated model, the leading effect, its rivals, and what would be named, and what the data leave
   // open of them.
-  const int points = 3 + static_cast<int>(kMostRivals);
-  return static_cast<int>(design_.size()) *
-         (points * model_.simulations.check + 2 * model_.simulations.effect);
+  const int models = 3 + static_cast<int>(kMostRivals);
+  return models * of_a_model() + 2 * static_cast<int>(design_.size()) * model_.simulations.effect;
+}
+
+int DiagnosisSession::of_a_model() const {
+  return static_cast<int>(design_.size()) * model_.simulations.check;
 }
 
 void DiagnosisSession::learn_from(const std::vector<ExperimentRuns>& runs, const RunThrough& run,

@@ -81,6 +81,8 @@ class DiagnosisSession {
   /// Rounds that may follow the design, and simulations in each.
   int most_rounds() const;
   int most_in_a_round() const;
+  /// Simulations of one model, over all experiments.
+  int of_a_model() const;
   /// Throws Stopped; std::runtime_error if too few simulations gave the numbers; what `run` throws.
   DiagnosisOutcome run(const RunThrough& run);
 

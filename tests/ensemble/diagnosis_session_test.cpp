@@ -447,6 +447,18 @@ TEST_F(Session, EffectsThatCannotBeLookedForAreSaid) {
   EXPECT_THAT(said(all), testing::Contains("cohesion: the model gives it"));
 }
 
+TEST_F(Session, WhatTheModelSaysInsteadOfAnExperimentIsSaid) {
+  JoinedData data = data_of({{"cohesion"}, 6, 5, 0.5, 3, ""});
+  data.experiments.front().overrides.push_back("material.mu_r=0.1");
+  const std::size_t before = DiagnosisSession(model, data_of({{"cohesion"}, 6, 5, 0.5, 3, ""}), {}, kAssets)
+                                 .data()
+                                 .notes.size();
+  const DiagnosisSession session(model, data, {}, kAssets);
+  EXPECT_EQ(session.data().notes.size(), before + 1) << "its mass is its own";
+  EXPECT_EQ(session.data().notes.front(),
+            "experiment heap sets material.mu_r=0.1; what the model says of material.mu_r is taken");
+}
+
 TEST_F(Session, ModelFilesAreChecked) {
   const auto error = [&](const std::string& text) {
     write_text_file(folder / "bad.yaml", text);
