@@ -29,7 +29,7 @@ namespace {
 
 // What the design costs, and what of it is there.
 void print_plan(const scree::DiagnosisSession& session, const scree::ResultsStore& store) {
-  std::size_t all = 0, there = 0;
+  std::set<std::string> all, still_to_come;  // experiments may share simulations
   double left = 0;
   bool known = true;
   for (std::size_t e = 0; e < session.design().size(); ++e) {
@@ -59,17 +59,19 @@ void print_plan(const scree::DiagnosisSession& session, const scree::ResultsStor
                  scree::estimated_spheres(session.data().experiments[e].scenario));
     if (readings > 0) fmt::print("; {} more readings of their piles", readings);
     fmt::print("\n");
-    all += piles.size();
-    there += here;
+    all.insert(piles.begin(), piles.end());
+    still_to_come.insert(to_come.begin(), to_come.end());
     if (timed > 0)
       left += seconds / static_cast<double>(timed) * static_cast<double>(to_come.size());
     else
       known = to_come.empty() && known;
   }
   fmt::print(
-      "{} simulations, {} of them in the store; then one to {} rounds of up to {} about what may be named, and "
+      "{} simulations, {} of them in the store; then one to {} rounds of up to {} about what may be named, "
+      "and "
       "last {} of each model that the answer shows if its fit has moved\n",
-      all, there, session.most_rounds(), session.most_in_a_round(), session.of_a_model());
+      all.size(), all.size() - still_to_come.size(), session.most_rounds(), session.most_in_a_round(),
+      session.of_a_model());
   for (const std::string& note : session.data().notes) fmt::print("note: {}\n", note);
   if (known)
     fmt::print("about {} are left, one run after another\n", scree::spell_duration(left));

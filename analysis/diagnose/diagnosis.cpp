@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -26,43 +24,6 @@ constexpr std::uint64_t kSeed = 20177;  // of the integrals
 constexpr double kWider = 1.5;          // spread of points to be learnt from, over that of what is open
 constexpr double kWithin = 0.9;         // probability of the intervals
 constexpr double kStep = 0.05;          // of a numerical derivative by a coordinate
-
-// `scatter_freedom`: of the covariance; infinite if it is known.
-double p_of(double chi2, int freedom, double scatter_freedom) {
-  if (std::isnan(chi2))
-    throw std::runtime_error("a misfit is no number: the measurements' covariance, or what was simulated");
-  if (freedom < 1 || chi2 <= 0) return 1;
-  if (std::isinf(scatter_freedom))
-    return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), chi2));
-  return boost::math::cdf(
-      boost::math::complement(boost::math::fisher_f(freedom, scatter_freedom), chi2 / freedom));
-}
-
-Gap gap_of(double chi2, int numbers, int fitted, double scatter_freedom) {
-  const int freedom = std::max(numbers - fitted, 1);
-  return {chi2, freedom, p_of(chi2, freedom, scatter_freedom), numbers > fitted};
-}
-
-// Chi-square and logarithm of the density, Student's t of several dimensions or normal; log_shape: without
-// the volume of the covariance, 0 where the values are those expected.
-struct Density {
-  double chi2, log_shape, log_density;
-};
-Density density(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance,
-                const Eigen::VectorXd& scale, double scatter_freedom) {
-  const Eigen::VectorXd d = difference.cwiseQuotient(scale);
-  const Eigen::MatrixXd c =
-      scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal();
-  const Eigen::LLT<Eigen::MatrixXd> factor(c);
-  if (factor.info() != Eigen::Success)
-    throw std::runtime_error("the covariance of measurements and simulations is not positive definite");
-  const double chi2 = factor.matrixL().solve(d).squaredNorm();
-  const double n = static_cast<double>(difference.size());
-  const double log_shape = std::isinf(scatter_freedom)
-                               ? -0.5 * chi2
-                               : -0.5 * (scatter_freedom + n) * std::log1p(chi2 / scatter_freedom);
-  return {chi2, log_shape, log_shape - factor.matrixLLT().diagonal().array().log().sum()};
-}
 
 // Base coordinates, then those of each effect's parameters.
 ModelPoint point_of(const ModelSpace& space, const Hypothesis& h, const Eigen::VectorXd& x) {
@@ -101,33 +62,32 @@ std::vector<Eigen::Index> everything(Eigen::Index n) {
 class Likelihood {
  public:
   Likelihood(const ModelSpace& space, const LearntModel& model, const Measurements& measured,
-             const Eigen::MatrixXd& covariance, double freedom, std::vector<Eigen::Index> which)
-      : space_(space), model_(model), which_(std::move(which)), freedom_(freedom) {
+             const Eigen::MatrixXd& covariance, const std::vector<ScatterBlock>& blocks,
+             std::vector<Eigen::Index> which)
+      : space_(space), model_(model), which_(std::move(which)), blocks_(blocks_among(blocks, which_)) {
     value_ = measured.vector()(which_);
     covariance_ = covariance(which_, which_);
-    scale_ = covariance_.diagonal().cwiseSqrt();
   }
 
   ModelPoint point(const Hypothesis& h, const Eigen::VectorXd& x) const { return point_of(space_, h, x); }
-  Density at(const Hypothesis& h, const Eigen::VectorXd& x) const {
+  Misfit at(const Hypothesis& h, const Eigen::VectorXd& x) const {
     const SurfacePrediction all = model_.at(point(h, x));
     Eigen::MatrixXd covariance = covariance_ + all.covariance(which_, which_);
     if (h.unknown) covariance.diagonal() += std::exp(x[x.size() - 1]) * covariance_.diagonal();
-    return density(value_ - all.mean(which_), covariance, scale_, freedom_);
+    return misfit(value_ - all.mean(which_), covariance, blocks_);
   }
   Evidence evidence(const Hypothesis& h) const {
     return integrate([&](const Eigen::VectorXd& x) { return at(h, x).log_density; }, box_of(space_, h),
                      kSeed);
   }
-  int numbers() const { return static_cast<int>(which_.size()); }
-  double freedom() const { return freedom_; }
+  const std::vector<ScatterBlock>& blocks() const { return blocks_; }
 
  private:
   const ModelSpace& space_;
   const LearntModel& model_;
   std::vector<Eigen::Index> which_;
-  double freedom_;
-  Eigen::VectorXd value_, scale_;
+  std::vector<ScatterBlock> blocks_;
+  Eigen::VectorXd value_;
   Eigen::MatrixXd covariance_;
 };
 
@@ -139,8 +99,7 @@ Judgement judge(const ModelSpace& space, const Likelihood& likelihood, const Hyp
   const int fitted = static_cast<int>(j.evidence.most_likely.size()) - (hypothesis.unknown ? 1 : 0);
   Hypothesis known = hypothesis;
   known.unknown = false;
-  j.gap = gap_of(likelihood.at(known, j.evidence.most_likely).chi2, likelihood.numbers(), fitted,
-                 likelihood.freedom());
+  j.gap = gap_of(likelihood.at(known, j.evidence.most_likely), likelihood.blocks(), fitted);
   Eigen::Index next = 0;
   const auto interval = [&](auto&& value) {
     const Evidence::Range range = j.evidence.shortest(next, kWithin);
@@ -207,24 +166,22 @@ void find(const ModelSpace& space, const LearntModel& model, Diagnosis& d) {
   const Eigen::VectorXd difference = d.measured.vector() - here.mean;
   const Eigen::MatrixXd covariance = d.covariance + here.covariance;
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
-  const auto n = static_cast<int>(difference.size());
-  d.nominal = gap_of(density(difference, covariance, scale, d.freedom).chi2, n, 0, d.freedom);
+  const auto gap = [&](const std::vector<Eigen::Index>& which) {
+    const std::vector<ScatterBlock> blocks = blocks_among(d.blocks, which);
+    return gap_of(misfit(difference(which), covariance(which, which), blocks), blocks, 0);
+  };
+  d.nominal = gap(everything(difference.size()));
   std::map<std::string, std::vector<Eigen::Index>> parts;
-  for (int k = 0; k < n; ++k) {
+  for (Eigen::Index k = 0; k < difference.size(); ++k) {
     const MeasuredValue& value = d.measured.values[static_cast<std::size_t>(k)];
     const double z = difference[k] / scale[k];
-    d.numbers.push_back({value.label, difference[k], z, gap_of(z * z, 1, 0, d.freedom), false});
+    d.numbers.push_back({value.label, difference[k], z, gap({k}), false});
     parts["experiment " + d.measured.experiments[value.experiment]].push_back(k);
     if (const std::string section = section_of_output(value.output); !section.empty())
       parts["section " + section].push_back(k);
     parts["quantity " + quantity_of_output(value.output)].push_back(k);
   }
-  for (const auto& [name, which] : parts)
-    d.parts.push_back(
-        {name, nan, nan,
-         gap_of(density(difference(which), covariance(which, which), scale(which), d.freedom).chi2,
-                static_cast<int>(which.size()), 0, d.freedom),
-         false});
+  for (const auto& [name, which] : parts) d.parts.push_back({name, nan, nan, gap(which), false});
   const auto mark = [](std::vector<Disagreement>& all) {
     std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.gap.p < b.gap.p; });
     double harmonic = 0;
@@ -314,8 +271,8 @@ std::vector<const ResponseSurface*> LearntModel::surfaces() const {
 
 std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Diagnosis& d, const LearntModel& model,
                                        const Hypothesis& hypothesis, int count,
-                                       const SimulatedPoints& simulated) {
-  const Likelihood likelihood(space, model, d.measured, d.covariance, d.freedom,
+                                       const std::vector<SimulatedPoints>& simulated) {
+  const Likelihood likelihood(space, model, d.measured, d.covariance, d.blocks,
                               everything(static_cast<Eigen::Index>(d.measured.values.size())));
   // The density of amplitudes that are even along a root is one over it; near absence as it is there.
   const auto log_evenly = [&](const ModelPoint& at) {
@@ -339,7 +296,8 @@ std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Diagnosis&
   Eigen::VectorXd weights = evidence.weights;
   for (Eigen::Index s = 0; s < weights.size(); ++s) {
     const ModelPoint at = point_of(space, hypothesis, evidence.samples.row(s));
-    if (nearest(at, simulated.gave_nothing) < nearest(at, simulated.measured)) weights[s] = 0;
+    for (const SimulatedPoints& of_one : simulated)
+      if (nearest(at, of_one.gave_nothing) < nearest(at, of_one.measured)) weights[s] = 0;
   }
   const double all = weights.sum();
   std::vector<ModelPoint> points;
@@ -374,8 +332,8 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
   d.measured = measured;
   const WorkingCovariance working = working_covariance(measured, model.surfaces());
   d.covariance = working.matrix;
-  d.freedom = working.freedom;
-  const Likelihood likelihood(space, model, measured, d.covariance, d.freedom,
+  d.blocks = working.blocks;
+  const Likelihood likelihood(space, model, measured, d.covariance, d.blocks,
                               everything(static_cast<Eigen::Index>(measured.values.size())));
   find(space, model, d);
   const auto judged = [&](const std::vector<Hypothesis>& hypotheses) {
@@ -486,7 +444,7 @@ HeldOut held_out(const ModelSpace& space, const Diagnosis& d, const LearntModel&
     for (Eigen::Index k = 0; k < n; ++k)
       if (std::find(which.begin(), which.end(), k) == which.end()) rest.push_back(k);
     if (rest.empty()) continue;
-    const Likelihood likelihood(space, model, d.measured, d.covariance, d.freedom, rest);
+    const Likelihood likelihood(space, model, d.measured, d.covariance, d.blocks, rest);
     const Evidence evidence = likelihood.evidence(hypothesis);
     // Mean and covariance over the posterior of the rest.
     const auto m = static_cast<Eigen::Index>(which.size());
@@ -502,11 +460,11 @@ HeldOut held_out(const ModelSpace& space, const Diagnosis& d, const LearntModel&
       within += w * here.covariance(which, which);
     }
     const Eigen::MatrixXd covariance = d.covariance(which, which) + within + square - mean * mean.transpose();
-    const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
-    const double chi2 = density(values(which) - mean, covariance, scale, d.freedom).chi2;
+    const std::vector<ScatterBlock> blocks = blocks_among(d.blocks, which);
+    const Misfit here = misfit(values(which) - mean, covariance, blocks);
     result.parts.push_back(name);
-    result.gaps.push_back(gap_of(chi2, static_cast<int>(m), 0, d.freedom));
-    result.chi2 += chi2;
+    result.gaps.push_back(gap_of(here, blocks, 0));
+    result.chi2 += here.chi2;
     result.count += static_cast<int>(m);
   }
   return result;
@@ -514,9 +472,7 @@ HeldOut held_out(const ModelSpace& space, const Diagnosis& d, const LearntModel&
 
 Gap simulated_gap(const Diagnosis& d, const LearntModel& model, const Eigen::VectorXd& mean, int runs) {
   const Eigen::MatrixXd covariance = d.covariance + model.scatter() / runs;
-  const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
-  return gap_of(density(d.measured.vector() - mean, covariance, scale, d.freedom).chi2,
-                static_cast<int>(mean.size()), 0, d.freedom);
+  return gap_of(misfit(d.measured.vector() - mean, covariance, d.blocks), d.blocks, 0);
 }
 
 double detectability(const LearntModel& model, const Eigen::MatrixXd& covariance, const Eigen::VectorXd& base,

@@ -21,16 +21,6 @@ inline constexpr double kSureAbove = 0.9;      ///< probability of a hypothesis 
 inline constexpr double kApartBy = 10;         ///< ratio of probabilities below which two are not told apart
 inline constexpr double kFalseDiscoveries = 0.1;  ///< expected share of false alarms in the map
 
-/// Distance of a model from the data.
-struct Gap {
-  double chi2 = 0;
-  int freedom = 0;  ///< numbers less what was fitted, 1 at least
-  double p = 1;     ///< probability of as much by chance (Fisher's F)
-  /// More numbers than parameters were fitted to. Without, `p` is that of one degree of freedom: the rules
-  /// above use it, but it is no test of the fit.
-  bool is_test = true;
-};
-
 /// Where the nominal model disagrees: one number, or several together.
 struct Disagreement {
   std::string where;      ///< label of a number; or "experiment heap", "section S6", "quantity chi"
@@ -98,8 +88,8 @@ struct DiagnosisVerdict {
 
 struct Diagnosis {
   Measurements measured;
-  Eigen::MatrixXd covariance;  ///< of the measured values, as used
-  double freedom = 0;          ///< degrees of freedom of that, see WorkingCovariance
+  Eigen::MatrixXd covariance;        ///< of the measured values, as used
+  std::vector<ScatterBlock> blocks;  ///< how well that is known, see WorkingCovariance
   Gap nominal;
   std::vector<Disagreement> numbers;  ///< by falling |z|
   std::vector<Disagreement> parts;    ///< experiments, sections, quantities
@@ -143,7 +133,8 @@ Diagnosis diagnose(const ModelSpace& space, const Measurements& measured, const 
                    const Contradicted& contradicted = {}, Pairs pairs_when = Pairs::where_none_explains,
                    const Diagnosis* before = nullptr, int threads = 1);
 
-/// Where simulations were done: those that gave the numbers, and those that failed or did not.
+/// Where simulations of an experiment were done: those that gave the numbers, and those that failed or did
+/// not.
 struct SimulatedPoints {
   std::vector<ModelPoint> measured, gave_nothing;
 };
@@ -152,10 +143,10 @@ struct SimulatedPoints {
 /// along amplitudes: where it is worth learning more. Where the surfaces know little the data may fit, and
 /// all such places are open: they are as likely as those where the surfaces know that it fits (the density
 /// counts without its covariance's volume), else what was simulated first would draw all that follows to
-/// itself. None lies where the nearest simulation gave nothing.
+/// itself. None lies where the nearest simulation of any experiment gave nothing.
 std::vector<ModelPoint> where_to_learn(const ModelSpace& space, const Diagnosis& diagnosis,
                                        const LearntModel& model, const Hypothesis& hypothesis, int count,
-                                       const SimulatedPoints& simulated);
+                                       const std::vector<SimulatedPoints>& simulated);
 
 /// How many of `count` simulations go to which rival of the leading hypothesis: by the roots of the
 /// probabilities of all that `among` lists, its own among them. The more even they are, the less is known of

@@ -10,7 +10,8 @@
 namespace scree {
 namespace {
 
-constexpr double kPriorRepeats = 10;  // what the simulation's scatter counts, in repeats
+constexpr double kPriorRepeats = 10;  // what the simulation's scatter counts, in repeats; m in the header
+constexpr double kEnoughTests = 20;   // more than values: their covariance needs no help
 constexpr double kLeastRatio = 0.05;  // of a measured variance to the simulation's: repeats that were rounded
 
 // Expected logarithm of chi-square of so many degrees of freedom, over them.
@@ -23,12 +24,65 @@ double freedom_of_log(double freedom) {
   return 2 / boost::math::trigamma(0.5 * freedom);
 }
 
-bool scatter_is_stated(const Measurements& measured, Eigen::Index k) {
-  const MeasuredValue& value = measured.values[static_cast<std::size_t>(k)];
-  if (!value.std || !value.repeats || *value.repeats < 2) return false;
-  for (Eigen::Index j = 0; j < measured.covariance.cols(); ++j)
-    if (j != k && measured.covariance(k, j) != 0) return false;
-  return true;
+// Values of one experiment whose scatter is known from repeats: those that say nothing of correlations, and
+// those that are correlated with each other, group by group.
+struct Repeated {
+  std::vector<Eigen::Index> uncorrelated;
+  std::vector<std::vector<Eigen::Index>> correlated;
+};
+
+bool has_repeats(const MeasuredValue& value) {
+  return value.std && value.repeats && *value.repeats >= 2 && *value.std > 0;
+}
+
+// All values that are correlated with this one, directly or through others; itself first.
+std::vector<Eigen::Index> correlated_with(const Eigen::MatrixXd& covariance, Eigen::Index k) {
+  std::vector<Eigen::Index> group{k};
+  for (std::size_t next = 0; next < group.size(); ++next)
+    for (Eigen::Index j = 0; j < covariance.cols(); ++j)
+      if (covariance(group[next], j) != 0 && std::find(group.begin(), group.end(), j) == group.end())
+        group.push_back(j);
+  std::sort(group.begin(), group.end());
+  return group;
+}
+
+Repeated repeated_values(const Measurements& measured, std::size_t experiment,
+                         const Eigen::VectorXd& seed_variance) {
+  const std::vector<Eigen::Index> all = measured.of(experiment);
+  const auto varies = [&](Eigen::Index k) {
+    const MeasuredValue& value = measured.values[static_cast<std::size_t>(k)];
+    return value.experiment == experiment && has_repeats(value) && seed_variance[k - all.front()] > 0;
+  };
+  Repeated repeated;
+  for (const Eigen::Index k : all) {
+    const std::vector<Eigen::Index> group = correlated_with(measured.covariance, k);
+    if (group.front() != k || !std::all_of(group.begin(), group.end(), varies)) continue;
+    if (group.size() == 1)
+      repeated.uncorrelated.push_back(k);
+    else
+      repeated.correlated.push_back(group);
+  }
+  return repeated;
+}
+
+// How much more an experiment's repeats scatter than the simulation: the mean over values of the ratio of
+// variances, and the freedom that it is known with.
+struct ScatterRatio {
+  double ratio = 1, freedom = 0;
+};
+
+ScatterRatio scatter_ratio(const Measurements& measured, const std::vector<Eigen::Index>& values,
+                           Eigen::Index first, const Eigen::MatrixXd& seeds) {
+  double weighted = 0, weight = 0, freedom = 0;
+  for (const Eigen::Index k : values) {
+    const MeasuredValue& value = measured.values[static_cast<std::size_t>(k)];
+    const double nu = *value.repeats - 1;
+    const double here = std::max(*value.std * *value.std / seeds(k - first, k - first), kLeastRatio);
+    weighted += nu * (std::log(here) - expected_log(nu));
+    weight += nu;
+    freedom += freedom_of_log(nu);
+  }
+  return {std::exp(weighted / weight), freedom};  // of logarithms: one odd number moves it little
 }
 
 const std::regex& section_pattern() {
@@ -52,47 +106,112 @@ std::vector<Eigen::Index> Measurements::of(std::size_t experiment) const {
   return which;
 }
 
+namespace {
+
+// Puts the scatter of such values in place of what is stated, and says with which freedom its scale is known;
+// `of_scatter`: between repeats, of the means.
+ScatterBlock put_scatter(const Measurements& measured, const std::vector<Eigen::Index>& values,
+                         const Eigen::MatrixXd& of_scatter, double freedom, Eigen::MatrixXd& covariance) {
+  double squares = 0;
+  for (std::size_t a = 0; a < values.size(); ++a) {
+    for (std::size_t b = 0; b < values.size(); ++b)
+      covariance(values[a], values[b]) =
+          of_scatter(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+    const MeasuredValue& value = measured.values[static_cast<std::size_t>(values[a])];
+    const double variance = covariance(values[a], values[a]);
+    const double beyond =
+        std::max(0.0, value.uncertainty * value.uncertainty - *value.std * *value.std / *value.repeats);
+    covariance(values[a], values[a]) += beyond;
+    squares += std::pow(variance / (variance + beyond), 2);
+  }
+  return {values, freedom * static_cast<double>(values.size()) / squares};
+}
+
+// Of values of which no correlation is stated.
+Eigen::MatrixXd scatter_by_simulation(const Measurements& measured, const std::vector<Eigen::Index>& values,
+                                      double ratio, Eigen::Index first, const Eigen::MatrixXd& seeds) {
+  const auto size = std::ssize(values);
+  Eigen::MatrixXd scatter(size, size);
+  for (Eigen::Index a = 0; a < size; ++a)
+    for (Eigen::Index b = 0; b < size; ++b) {
+      const Eigen::Index i = values[static_cast<std::size_t>(a)], j = values[static_cast<std::size_t>(b)];
+      const MeasuredValue &one = measured.values[static_cast<std::size_t>(i)],
+                          &other = measured.values[static_cast<std::size_t>(j)];
+      const double of_seeds = seeds(i - first, j - first);
+      const double n = std::sqrt(static_cast<double>(*one.repeats) * *other.repeats);
+      scatter(a, b) = of_seeds * std::min(ratio, 1.0) / n;
+      if (a != b) continue;
+      const double nu = n - 1, s2 = *one.std * *one.std;
+      const double variance = (kPriorRepeats * ratio * of_seeds + nu * s2) / (kPriorRepeats + nu);
+      // A correlation above 1 cannot come of it: the diagonal is at least that of the correlated part.
+      scatter(a, a) = std::max(variance, 1.02 * of_seeds * std::min(ratio, 1.0)) / n;
+    }
+  return scatter;
+}
+
+// How many tests the simulation's scatter counts beside those of values whose correlations are stated.
+double like_the_simulation(std::size_t values, int repeats) {
+  const double p = static_cast<double>(values);
+  return repeats >= p + kEnoughTests ? 0.0 : p + kPriorRepeats;
+}
+
+// The scale of Student's t of such values; `freedom` is its degrees of freedom.
+Eigen::MatrixXd scatter_as_stated(const Measurements& measured, const std::vector<Eigen::Index>& values,
+                                  double ratio, int repeats, double freedom, Eigen::Index first,
+                                  const Eigen::MatrixXd& seeds) {
+  const auto size = std::ssize(values);
+  const double like = like_the_simulation(values.size(), repeats);
+  Eigen::MatrixXd scatter(size, size);
+  for (Eigen::Index a = 0; a < size; ++a)
+    for (Eigen::Index b = 0; b < size; ++b) {
+      const Eigen::Index i = values[static_cast<std::size_t>(a)], j = values[static_cast<std::size_t>(b)];
+      const MeasuredValue &one = measured.values[static_cast<std::size_t>(i)],
+                          &other = measured.values[static_cast<std::size_t>(j)];
+      const double correlation =
+          measured.covariance(i, j) / std::sqrt(measured.covariance(i, i) * measured.covariance(j, j));
+      const double sample = correlation * *one.std * *other.std;
+      scatter(a, b) = (like * ratio * seeds(i - first, j - first) + (repeats - 1) * sample) / freedom /
+                      std::sqrt(static_cast<double>(*one.repeats) * *other.repeats);
+    }
+  return scatter;
+}
+
+}  // namespace
+
 WorkingCovariance working_covariance(const Measurements& measured,
                                      const std::vector<const ResponseSurface*>& surfaces) {
-  Eigen::MatrixXd covariance = measured.covariance;
-  double freedom = 0;
+  WorkingCovariance working{measured.covariance, {{}}};
+  std::vector<bool> scatters(measured.values.size());
   for (std::size_t e = 0; e < measured.experiments.size(); ++e) {
-    const std::vector<Eigen::Index> all = measured.of(e);
+    const std::vector<Eigen::Index> of_experiment = measured.of(e);
+    if (of_experiment.empty()) continue;
+    const Eigen::Index first = of_experiment.front();
     const Eigen::MatrixXd& seeds = surfaces[e]->scatter();
-    std::vector<std::size_t> free;  // columns of the experiment
-    double weighted = 0, weight = 0, known = 0;
-    for (std::size_t c = 0; c < all.size(); ++c) {
-      const auto k = static_cast<Eigen::Index>(c);
-      if (!scatter_is_stated(measured, all[c]) || !(seeds(k, k) > 0)) continue;
-      const MeasuredValue& value = measured.values[static_cast<std::size_t>(all[c])];
-      free.push_back(c);
-      const double nu = *value.repeats - 1;
-      const double here = std::max(*value.std * *value.std / seeds(k, k), kLeastRatio);
-      weighted += nu * (std::log(here) - expected_log(nu));
-      weight += nu;
-      known += freedom_of_log(nu);
+    const Repeated repeated = repeated_values(measured, e, seeds.diagonal());
+    std::vector<Eigen::Index> all = repeated.uncorrelated;
+    for (const auto& group : repeated.correlated) all.insert(all.end(), group.begin(), group.end());
+    if (all.empty()) continue;
+    for (const Eigen::Index k : all) scatters[static_cast<std::size_t>(k)] = true;
+    const ScatterRatio known = scatter_ratio(measured, all, first, seeds);
+    if (const auto& values = repeated.uncorrelated; !values.empty())
+      working.blocks.push_back(
+          put_scatter(measured, values, scatter_by_simulation(measured, values, known.ratio, first, seeds),
+                      scatter_ratio(measured, values, first, seeds).freedom, working.matrix));
+    for (const auto& values : repeated.correlated) {
+      int repeats = std::numeric_limits<int>::max();
+      for (const Eigen::Index k : values)
+        repeats = std::min(repeats, *measured.values[static_cast<std::size_t>(k)].repeats);
+      const double freedom =
+          repeats + like_the_simulation(values.size(), repeats) - static_cast<double>(values.size());
+      working.blocks.push_back(put_scatter(
+          measured, values, scatter_as_stated(measured, values, known.ratio, repeats, freedom, first, seeds),
+          freedom, working.matrix));
     }
-    if (free.empty()) continue;
-    const double ratio = std::exp(weighted / weight);  // of logarithms: one odd number moves it little
-    freedom += known;
-    for (const std::size_t a : free)
-      for (const std::size_t b : free) {
-        const MeasuredValue& first = measured.values[static_cast<std::size_t>(all[a])];
-        const MeasuredValue& second = measured.values[static_cast<std::size_t>(all[b])];
-        const double of_seeds = seeds(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
-        const double n = std::sqrt(static_cast<double>(*first.repeats) * *second.repeats);
-        if (a != b) {
-          covariance(all[a], all[b]) = of_seeds * std::min(ratio, 1.0) / n;
-          continue;
-        }
-        const double nu = n - 1, s2 = *first.std * *first.std;
-        const double variance = (kPriorRepeats * ratio * of_seeds + nu * s2) / (kPriorRepeats + nu);
-        const double beyond = std::max(0.0, first.uncertainty * first.uncertainty - s2 / n);
-        // A correlation above 1 cannot come of it: the diagonal is at least that of the correlated part.
-        covariance(all[a], all[a]) = std::max(variance, 1.02 * of_seeds * std::min(ratio, 1.0)) / n + beyond;
-      }
   }
-  return {covariance, freedom > 0 ? freedom : std::numeric_limits<double>::infinity()};
+  for (std::size_t k = 0; k < scatters.size(); ++k)
+    if (!scatters[k]) working.blocks.front().values.push_back(static_cast<Eigen::Index>(k));
+  if (working.blocks.front().values.empty()) working.blocks.erase(working.blocks.begin());
+  return working;
 }
 
 std::string section_of_output(const std::string& output) {

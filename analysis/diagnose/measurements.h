@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/diagnose/misfit.h"
 #include "analysis/diagnose/response_surface.h"
 
 namespace scree {
@@ -31,20 +32,26 @@ struct Measurements {
   std::vector<Eigen::Index> of(std::size_t experiment) const;
 };
 
-/// The covariance that a diagnosis uses: a deviation between few repeats is itself uncertain, and the numbers
-/// of one test are correlated, while most tables state neither.
+/// The covariance that a diagnosis uses: a deviation between few repeats is itself uncertain, and so are
+/// correlations; the numbers of one test are correlated, while most tables do not state how.
 ///
-/// For a value with the deviation s of n repeats whose correlations are not stated, the variance between
-/// repeats is (m k S + (n - 1) s^2) / (m + n - 1) with S that between seeds of the simulation, k the mean
-/// over the experiment of s^2 / S, and m = 10; the covariance of two such values is S's times min(k, 1); both
-/// over n. What the stated uncertainty holds beyond s / sqrt(n) is added to the diagonal. Values without a
-/// deviation, and stated covariances, stay as they are.
+/// Of values with the deviation s of n repeats, S is the covariance between seeds of the simulation, and k
+/// the mean over the experiment of s^2 / S (of logarithms).
 ///
-/// `freedom`: degrees of freedom of the scatter, the sum of n - 1 over such values; infinite without any.
-/// Squares over this covariance follow Fisher's F, not chi-square: common scales are as uncertain as that.
+/// - Correlations are not stated: the variance between repeats is (m k S + (n - 1) s^2) / (m + n - 1) with
+///   m = 10; the covariance of two such values is S's times min(k, 1); both over n. Together they are a block
+///   (misfit.h): its scale is k's, whose freedom is the sum of the values'.
+/// - p values whose correlations with each other are stated, V their covariance from n tests, are a block:
+///   the scale of Student's t is (n - 1) V / (n - p) with n - p degrees of freedom (Hotelling 1931). With
+///   less than p + 20 tests k S joins them as p + m more: ((p + m) k S + (n - 1) V) / (n + m) with n + m
+///   degrees of freedom (inverse Wishart; Gelman et al., Bayesian Data Analysis, 3.6).
+/// - What the stated uncertainty holds beyond s / sqrt(n) is added to the diagonal and is known: the freedom
+///   of the block is that of its scatter over the mean square of scatter's share in its variances
+///   (Welch-Satterthwaite).
+/// - Other values, and those correlated with values of another experiment, stay as stated and are known.
 struct WorkingCovariance {
   Eigen::MatrixXd matrix;
-  double freedom = 0;
+  std::vector<ScatterBlock> blocks;  ///< what is known first
 };
 WorkingCovariance working_covariance(const Measurements& measured,
                                      const std::vector<const ResponseSurface*>& surfaces);

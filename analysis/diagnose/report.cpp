@@ -383,7 +383,7 @@ std::string numbers_table(const DiagnosisOutcome& o) {
 }
 
 std::string held_out_table(const DiagnosisOutcome& o) {
-  if (!o.held_out_calibrated || !o.held_out_augmented) return {};
+  if (!o.held_out_calibrated || !o.held_out_augmented || o.held_out_augmented->count == 0) return {};
   std::string rows;
   const HeldOut &before = *o.held_out_calibrated, &after = *o.held_out_augmented;
   for (std::size_t k = 0; k < before.parts.size(); ++k)

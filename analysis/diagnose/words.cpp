@@ -261,7 +261,7 @@ std::vector<std::string> diagnosis_in_words(const DiagnosisOutcome& o) {
   lines.push_back(counted(o));
   lines.push_back(tested(o));
   if (const std::string gaps = simulated_gaps(o); !gaps.empty()) lines.push_back(gaps);
-  if (o.held_out_calibrated && o.held_out_augmented)
+  if (o.held_out_calibrated && o.held_out_augmented && o.held_out_augmented->count > 0)
     lines.push_back(fmt::format(
         "Left out of the fit in turn and foretold ({}): with re-calibration alone chi-square {} on {}, with "
         "the effect {}.",

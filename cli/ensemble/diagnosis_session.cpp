@@ -82,8 +82,8 @@ std::vector<std::string> set_aside(const DiagnosisModel& model, const Dataset::E
   for (const std::string& each : experiment.overrides) {
     const std::string key = each.substr(0, each.find('='));
     if (model.places.contains(key) && std::find(fixed.begin(), fixed.end(), each) == fixed.end())
-      notes.push_back(
-          fmt::format("experiment {} sets {}; what the model says of {} is taken", experiment.name, each, key));
+      notes.push_back(fmt::format("experiment {} sets {}; what the model says of {} is taken",
+                                  experiment.name, each, key));
   }
   return notes;
 }
@@ -260,11 +260,21 @@ DiagnosisSession::DiagnosisSession(const DiagnosisModel& model, JoinedData data,
     data_.notes.push_back(fmt::format("not looked for: {}: {}", effect, why));
   if (data_.measured.values.size() <= space_.base.size())
     data_.notes.push_back(fmt::format(
-        "{} and {}: these alone can explain almost anything, so that no effect can be named; measure more",
+        "{} and {}: these alone can explain almost anything within their ranges, and no fit of an effect can "
+        "be tested; measure more",
         counted_text(data_.measured.values.size(), "measured number"),
         counted_text(space_.base.size(), "uncertain parameter")));
   design_ = in_every_experiment(design_of(space_, model.simulations));
+  for (std::size_t e = 0; e < design_.size(); ++e)
+    for (std::size_t before = 0; before < e; ++before)
+      if (design_[e].requests.front().key == design_[before].requests.front().key)
+        data_.notes.push_back(fmt::format(
+            "experiments {} and {} are the same simulation: it is run once, and what its fits do not know "
+            "counts "
+            "as if they were two; put the measurements of both into one experiment where that matters",
+            data_.experiments[before].name, data_.experiments[e].name));
   learnt_.resize(data_.experiments.size());
+  gave_nothing_.resize(data_.experiments.size());
   forecasts_.resize(data_.experiments.size());
   failure_.resize(data_.experiments.size());
   everything_.resize(data_.experiments.size());
@@ -313,12 +323,14 @@ void DiagnosisSession::learn_from(const std::vector<ExperimentRuns>& runs, const
     failure_[e].clear();
     for (const auto& each : here)
       if (each && each->state == RunState::failed) failure_[e] = each->message;
-    gave_nothing_.insert(gave_nothing_.end(), gathered.left_out.begin(), gathered.left_out.end());
+    gave_nothing_[e].insert(gave_nothing_[e].end(), gathered.left_out.begin(), gathered.left_out.end());
     if (!gathered.left_out.empty())
       outcome.notes.push_back(fmt::format(
           "{}: {} of {} simulations failed, did not come to rest or lack a measured number; left out",
           data_.experiments[e].name, gathered.left_out.size(), here.size()));
-    outcome.simulations += static_cast<int>(gathered.runs.size());
+    for (std::size_t k = 0; k < here.size(); ++k)
+      if (measured_in(here[k], outputs)) used_.insert(runs[e].requests[k].key);
+    outcome.simulations = static_cast<int>(used_.size());
     for (DesignRun& each : gathered.runs) learnt_[e].push_back(std::move(each));
     for (std::size_t k = 0; k < here.size(); ++k)
       if (here[k] && here[k]->state == RunState::done && here[k]->at_rest())
@@ -373,10 +385,12 @@ SimulatedModel DiagnosisSession::simulate(const ModelPoint& point, const RunThro
   return simulated;
 }
 
-SimulatedPoints DiagnosisSession::simulated() const {
-  SimulatedPoints all{{}, gave_nothing_};
-  for (const auto& runs : learnt_)
-    for (const DesignRun& run : runs) all.measured.push_back(run.at);
+std::vector<SimulatedPoints> DiagnosisSession::simulated() const {
+  std::vector<SimulatedPoints> all;
+  for (std::size_t e = 0; e < learnt_.size(); ++e) {
+    all.push_back({{}, gave_nothing_[e]});
+    for (const DesignRun& run : learnt_[e]) all.back().measured.push_back(run.at);
+  }
   return all;
 }
 
@@ -563,7 +577,7 @@ bool DiagnosisSession::one_round(const Diagnosis& d, const LearntModel& model, T
     if (tried.simulate(*j)) fresh = true;
   const std::vector<const Judgement*> open = open_to_simulation(d, tried);  // some may have failed now
   if (open.empty()) return fresh;
-  const SimulatedPoints so_far = simulated();
+  const std::vector<SimulatedPoints> so_far = simulated();
   std::vector<ModelPoint> points =
       where_to_learn(space_, d, model, open.front()->hypothesis, model_.simulations.effect, so_far);
   for (const auto& [rival, count] : shared_by_rivals(open, *open.front(), model_.simulations.effect))

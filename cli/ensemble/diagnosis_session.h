@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -98,7 +99,7 @@ class DiagnosisSession {
   // What its own simulations contradict is not said: those of the last fit and fresh ones, and, of effects,
   // those of every fit before.
   void say_what_stands(Diagnosis& d, TriedModels& tried, DiagnosisOutcome& outcome);
-  SimulatedPoints simulated() const;
+  std::vector<SimulatedPoints> simulated() const;
   LearntModel learn() const;
   // How the model foretold the simulations after the first so many, by experiment.
   void compare(const LearntModel& model, const std::vector<std::size_t>& known);
@@ -112,8 +113,8 @@ class DiagnosisSession {
   ModelSpace space_;
   std::vector<ExperimentRuns> design_;
   DesignRuns learnt_;
-  std::vector<ModelPoint> gave_nothing_;          // of which a simulation failed or lacks a measured number
-  std::vector<std::vector<Forecast>> forecasts_;  // by experiment
+  std::vector<std::vector<ModelPoint>> gave_nothing_;  // failed or lack a measured number; by experiment
+  std::vector<std::vector<Forecast>> forecasts_;       // by experiment
   struct WholeRun {
     ModelPoint at;
     std::map<std::string, double> outputs;
@@ -121,6 +122,7 @@ class DiagnosisSession {
   };
   std::vector<std::vector<WholeRun>> everything_;  // for what was not measured; by experiment
   std::vector<std::string> failure_;               // the last of each experiment, why; empty without one
+  std::set<std::string> used_;                     // keys of the simulations that gave what was measured
   std::uint64_t checks_ = 0;                       // seeds used for fits and what is open of them
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 // A world whose truth is a formula: what simulations of it would give, and measurements of it.
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -73,27 +74,32 @@ class SyntheticWorld {
 
   /// Means of `repeats` with their deviations.
   Measurements measure(const ModelPoint& truth, int repeats, std::uint64_t seed) const {
+    return measure(truth, {repeats, repeats}, seed, false);
+  }
+  /// The same with so many repeats of each experiment; `correlated`: with the covariance of their means.
+  Measurements measure(const ModelPoint& truth, const std::array<int, 2>& repeats_of, std::uint64_t seed,
+                       bool correlated) const {
     Random random(seed, 1, RandomPurpose::measurement);
     Measurements measured;
     measured.experiments = experiments;
+    measured.covariance = Eigen::MatrixXd::Zero(numbers(0) + numbers(1), numbers(0) + numbers(1));
     for (int x = 0; x < 2; ++x) {
+      const int repeats = repeats_of[static_cast<std::size_t>(x)];
       Eigen::MatrixXd y(repeats, numbers(x));
       for (int r = 0; r < repeats; ++r) y.row(r) = run(x, truth, random).transpose();
       const Eigen::RowVectorXd mean = y.colwise().mean();
-      const Eigen::RowVectorXd std =
-          ((y.rowwise() - mean).colwise().squaredNorm() / (repeats - 1)).cwiseSqrt();
+      const Eigen::MatrixXd off = y.rowwise() - mean;
+      const Eigen::MatrixXd of_means = off.transpose() * off / (repeats - 1) / repeats;
+      const Eigen::RowVectorXd std = (repeats * of_means.diagonal()).cwiseSqrt();
+      auto block = measured.covariance.block(x * numbers(0), x * numbers(0), numbers(x), numbers(x));
+      block = of_means;
+      if (!correlated) block = Eigen::MatrixXd(of_means.diagonal().asDiagonal());
       for (int c = 0; c < numbers(x); ++c) {
         const std::string name = "chi_S" + std::to_string(c + 1);
         measured.values.push_back({static_cast<std::size_t>(x), name,
                                    experiments[static_cast<std::size_t>(x)] + "/" + name, mean[c],
                                    std[c] / std::sqrt(repeats), std[c], repeats});
       }
-    }
-    const auto n = static_cast<Eigen::Index>(measured.values.size());
-    measured.covariance = Eigen::MatrixXd::Zero(n, n);
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const double u = measured.values[static_cast<std::size_t>(k)].uncertainty;
-      measured.covariance(k, k) = u * u;
     }
     return measured;
   }
