@@ -7,8 +7,10 @@
 #include <stdexcept>
 
 #include "analysis/pile/half_cone.h"
+#include "analysis/pile/mass_quantile.h"
 #include "analysis/pile/slope_profile.h"
 #include "analysis/pile/toe_share.h"
+#include "analysis/report/report_text.h"
 #include "analysis/results/outputs.h"
 #include "analysis/results/summary.h"
 #include "scree_version.h"
@@ -22,6 +24,7 @@ constexpr double kOverlapWarning =
     0.10;                         // of the smaller radius; physics of soft spheres beyond it is doubtful
 constexpr double kHalfWidth = 4;  // of the section through a pile, m: half a truck bed or blade
 constexpr double kCellsInHeight = 0.1;  // of the bench, size of the section's cells
+constexpr double kThinCover = 5;        // of its D50: rock in a thinner layer lies as its bed lies
 constexpr double kUsualPorosity = 0.4;  // of a pile too thin to have an inside
 
 std::vector<double> dump_points(const Scenario& scenario) {
@@ -157,7 +160,14 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
       analyse_inside_of(scenario, *bench, dumped, r);
     }
     r.profile = slope_profile(r.final_state.grains, bench->height);
-    if (const auto line = slope_line(r.profile, bench->height)) r.slope_angle = line->angle;
+    if (const auto line = slope_line(r.profile, bench->height)) {
+      r.slope_angle = line->angle;
+      const double cover = cover_on_face(r.profile, {bench->height, bench->slope_deg}) -
+                           ball_radius(bench->base_layer, bench->ball_diameter);
+      std::vector<WeighedValue> diameters;
+      for (const Grain& g : r.original) diameters.push_back({g.diameter, g.mass});
+      r.slope_cover = cover / mass_quantile(std::move(diameters), 0.5);
+    }
   } else if (std::holds_alternative<BucketDump>(scenario.experiment)) {
     try {
       const HalfCone cone = analyse_half_cone(r.final_state.grains, dumped_until(last), measured);
@@ -207,6 +217,11 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
       result.notes.push_back(fmt::format(
           "seed {}: no slope angle; too little of the pile's surface lies between {:g} and {:g} m", s.seed,
           kSlopeLow * result.bench_height, kSlopeHigh * result.bench_height));
+    if (bench_of(scenario) && s.slope_angle && s.slope_cover < kThinCover)
+      result.notes.push_back(fmt::format(
+          "seed {}: the rock lies {} times its D50 thick on the face of the bench: its slope is the face's "
+          "more than its own",
+          s.seed, decimals_text(std::max(s.slope_cover, 0.0), 1)));
     if (s.interrupted)
       result.notes.push_back(fmt::format("seed {} was ended by the user: its pile is not finished", s.seed));
     else if (std::holds_alternative<BucketDump>(scenario.experiment) && s.sections.empty())

@@ -27,7 +27,7 @@ void note_misfit(const Scenario& scenario, const SeedResult& seed, std::vector<s
       masses.push_back(grain.mass);
     }
     const double pile = PassingCurve(diameters, masses).diameter(0.5),
-                 dumped = read_grading(scenario.grading_file).diameter(0.5);
+                 dumped = grading_of(scenario).diameter(0.5);
     if (pile > kOtherRock * dumped || dumped > kOtherRock * pile)
       notes.push_back(fmt::format(
           "D50 of this pile is {:.3g} m, that of the scenario's grading {:.3g} m: is it this rock, "
@@ -76,7 +76,7 @@ Outputs outputs_of_snapshot(const Scenario& scenario, SnapshotRead read, std::ve
   } else if (!scenario.grading_file.empty()) {
     double mass = 0;
     for (const Grain& grain : outcome.final_state.grains) mass += grain.mass;
-    outcome.original = grains_of(read_grading(scenario.grading_file), mass);
+    outcome.original = grains_of(grading_of(scenario), mass);
   } else {
     outcome.original = outcome.final_state.grains;
   }

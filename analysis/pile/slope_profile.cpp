@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -63,6 +64,17 @@ std::optional<SlopeLine> slope_line(const std::vector<std::array<double, 2>>& pr
   const double spread = n * sxx - sx * sx;
   if (n < 4 || spread <= 0) return std::nullopt;
   return SlopeLine{-std::atan((n * sxz - sx * sz) / spread) * 180.0 / std::numbers::pi, sx / n, sz / n};
+}
+
+double cover_on_face(const std::vector<std::array<double, 2>>& profile, const BenchOutline& bench) {
+  double sum = 0;
+  int places = 0;
+  for (const auto& [x, z] : profile) {
+    if (x < 0 || x > bench.toe() || z < kSlopeLow * bench.height || z > kSlopeHigh * bench.height) continue;
+    sum += (z - bench.ground(x)) * std::cos(bench.slope_deg * std::numbers::pi / 180);
+    ++places;
+  }
+  return places > 0 ? sum / places : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace scree

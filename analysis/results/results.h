@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -53,6 +54,8 @@ struct SeedResult {
   std::optional<double> rebound_height;  ///< drop test, m
   std::vector<std::array<double, 2>> profile;  ///< slope profile (x, z) m: surface along the dump axis
   std::optional<double> slope_angle;           ///< degrees, fitted to the middle of the slope
+  /// Thickness of the rock on the bench's face there, normal to it, over its D50; NaN when not known.
+  double slope_cover = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// A printed value of the thesis.

@@ -25,6 +25,18 @@ double passing_between(const Grading::Point& a, const Grading::Point& b, double 
          (b.passing - a.passing) * std::log(diameter / a.diameter) / std::log(b.diameter / a.diameter);
 }
 
+/// The points of a curve without what is finer than a diameter between its ends, rescaled to 0..1.
+std::vector<Grading::Point> coarser_than(double from, const std::vector<Grading::Point>& points) {
+  const auto above =
+      std::upper_bound(points.begin(), points.end(), from,
+                       [](double d, const Grading::Point& point) { return d < point.diameter; });
+  const double finer = passing_between(*(above - 1), *above, from);
+  std::vector<Grading::Point> coarse{{from, 0}};
+  for (auto at = above; at != points.end(); ++at)
+    coarse.push_back({at->diameter, (at->passing - finer) / (1 - finer)});
+  return coarse;
+}
+
 /// The columns of a grading file, and what makes a diameter metres.
 struct Columns {
   std::size_t diameter, passing;
@@ -142,7 +154,7 @@ Grading Grading::with_fines(double share, double ratio) const {
   return Grading(name_, std::move(points));
 }
 
-Grading read_grading(const std::filesystem::path& file) {
+Grading read_grading(const std::filesystem::path& file, double from) {
   DelimitedTable table(file, kMostFileBytes);
   const Columns columns = columns_of(file, table);
   struct Row {
@@ -173,15 +185,28 @@ Grading read_grading(const std::filesystem::path& file) {
       fail(fmt::format("passing {} % is below that of a finer diameter, {} %", rows[k].passing,
                        rows[k - 1].passing));
   }
-  if (rows.front().passing != 0)
-    throw FileError(file, rows.front().line,
-                    fmt::format("the smallest diameter must have passing 0, not {}", rows.front().passing));
   if (rows.back().passing != 100)
     throw FileError(file, rows.back().line,
                     fmt::format("the largest diameter must have passing 100, not {}", rows.back().passing));
+  if (rows.front().passing != 0 && !(from > 0))
+    throw FileError(file, rows.front().line,
+                    fmt::format("the smallest diameter must have passing 0, not {}; grading_from_m of a "
+                                "scenario leaves out what is finer than a diameter",
+                                rows.front().passing));
+  if (rows.front().passing != 0 && from < rows.front().diameter)
+    throw FileError(
+        file, rows.front().line,
+        fmt::format("{} % of the rock are finer than {:g} m, and the table does not say how fine; "
+                    "grading_from_m must be {:g} or more",
+                    rows.front().passing, rows.front().diameter, rows.front().diameter));
+  const auto all = std::find_if(rows.begin(), rows.end(), [](const Row& row) { return row.passing == 100; });
+  if (from >= all->diameter)
+    throw FileError(
+        file, all->line,
+        fmt::format("no rock is coarser than {:g} m, and grading_from_m is {:g}", all->diameter, from));
   std::vector<Grading::Point> points;
   for (const Row& row : rows) points.push_back({row.diameter, row.passing / 100});
-  return Grading(file.stem().string(), std::move(points));
+  return Grading(file.stem().string(), from >= points.front().diameter ? coarser_than(from, points) : points);
 }
 
 }  // namespace scree

@@ -15,8 +15,12 @@ const EffectUse* Scenario::effect(const Effect& wanted) const {
   return const_cast<Scenario*>(this)->effect(wanted);
 }
 
+Grading grading_of(const Scenario& scenario) {
+  return read_grading(scenario.grading_file, scenario.grading_from);
+}
+
 EffectiveModel effective_model(const Scenario& scenario) {
-  EffectiveModel model{{}, read_grading(scenario.grading_file), scenario.material, {}};
+  EffectiveModel model{{}, grading_of(scenario), scenario.material, {}};
   EffectContext& context = model.context;
   context = {.d50 = scenario.effect_diameter.value_or(model.grading.diameter(0.5)),
              .smallest = model.grading.min_diameter(),

@@ -178,6 +178,7 @@ struct Scenario {
   std::vector<std::uint64_t> seeds{10001};
   Material material;
   std::filesystem::path grading_file;
+  double grading_from = 0;  ///< m; finer rock of the grading is left out
   std::variant<EndDump, ReposeLift, DropTest, PushDump, BucketDump> experiment;
   std::vector<ToolSpec> tools;
   std::vector<EffectUse> effects;         ///< in the order of all_effects()
@@ -196,6 +197,9 @@ struct Scenario {
 
 /// Name of the experiment's type in a file: end_dump, repose_lift, drop_test, push_dump, bucket_dump.
 std::string_view experiment_type(const Scenario& scenario);
+
+/// The rock as the file has it, from the finest that is not left out; throws as read_grading does.
+Grading grading_of(const Scenario& scenario);
 
 /// What the scenario's effects change; grading and rock with them.
 struct EffectiveModel {

@@ -95,7 +95,7 @@ class Checks {
       fail(key,
            fmt::format(
                "{}: about {:.1f} million spheres ({} of {}), more than the {:.0f} million allowed; {}, or "
-               "take a grading without its finest part",
+               "leave out the finest rock with grading_from_m",
                path, count / 1e6, load, model_->grading.name(), kMaxSpheres / 1e6, cure));
   }
 

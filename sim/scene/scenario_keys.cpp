@@ -369,6 +369,9 @@ Fields scenario_keys(Scenario& s) {
       {"material", Group{[&s] { return keys(s.material); }}, "The rock and the contact law."},
       {"grading", GradingFile{&s.grading_file}, "Name of a grading in assets/gradings, or path of a CSV.",
        true},
+      {"grading_from_m", Number{&s.grading_from, "m", {0, 1000}},
+       "Rock of the grading finer than this is left out, and the rest counts as the whole; 0: none. A sieve "
+       "curve may then begin above 0 %."},
       {"experiment", experiment(s), "What is done with the rock.", true},
       {"tools",
        GroupList{[&s](std::size_t n) { s.tools.assign(n, {}); },

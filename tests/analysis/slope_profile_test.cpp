@@ -51,6 +51,17 @@ TEST(SlopeProfile, AngleIsThatOfThePlane) {
     }
 }
 
+// Between a face at 45 degrees and a surface at 37 degrees through the same crest rock is
+// x (tan 45 - tan 37) cos 45 thick, normal to the face; on the face and between the heights of a fit x goes
+// from 0.15 H / tan 37 to H / tan 45.
+TEST(SlopeProfile, CoverIsTheThicknessOnTheFace) {
+  const double from = 0.15 * kHeight / std::tan(37 * kRadians), to = kHeight;
+  const double thick =
+      0.5 * (from + to) * (std::tan(45 * kRadians) - std::tan(37 * kRadians)) * std::cos(45 * kRadians);
+  EXPECT_NEAR(cover_on_face(slope_profile(slope(37, 0, 3), kHeight), {kHeight, 45}), thick, 0.15);
+  EXPECT_TRUE(std::isnan(cover_on_face({}, {kHeight, 45})));
+}
+
 TEST(SlopeProfile, BlocksOnTheFloorAndHolesAtTheirFootDoNotTiltIt) {
   std::vector<Grain> pile = slope(37, 0, 5);
   const double before = line_of(pile)->angle;

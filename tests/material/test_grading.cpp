@@ -150,6 +150,22 @@ TEST(GradingFile, ReadsCommentsAndWindowsLineEnds) {
   std::filesystem::remove(file);
 }
 
+// P' = (P - P_from) / (1 - P_from), with P linear in log d: of 10 % at 8 mm and 100 % at 80 mm half of the
+// way in log d, at 8 sqrt(10) mm, is 55 %.
+TEST(GradingFile, LeavesOutWhatIsFiner) {
+  const auto file = std::filesystem::path(testing::TempDir()) / "scree_fine_grading.csv";
+  std::ofstream(file) << "diameter_mm,passing_pct\n8,10\n80,100\n";
+  const double middle = 0.008 * std::sqrt(10.0);
+  const Grading all = read_grading(file, 0.008), coarse = read_grading(file, middle);
+  EXPECT_DOUBLE_EQ(all.min_diameter(), 0.008);
+  EXPECT_NEAR(all.passing(middle), 0.5, 1e-12);
+  EXPECT_NEAR(coarse.min_diameter(), middle, 1e-15);
+  EXPECT_NEAR(coarse.passing(0.008 * std::pow(10, 0.75)), 0.5, 1e-12);
+  EXPECT_DOUBLE_EQ(coarse.max_diameter(), 0.08);
+  for (const double from : {0.0, 0.004, 0.08, 1.0}) EXPECT_THROW(read_grading(file, from), FileError) << from;
+  std::filesystem::remove(file);
+}
+
 /// Value of (curve, quantity) as psd_constraints.csv names it, in m, share or -; NaN for what a curve does
 /// not give.
 double quantity_of(const Grading& g, const std::string& quantity) {

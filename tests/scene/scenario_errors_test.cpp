@@ -185,7 +185,7 @@ const BadCase kBadCases[] = {
     {"GrainsWiderThanBox", "grading: giant\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump}\n\n",
      {"3:13: experiment.truck.load_box_m: 4 m is not wider than the largest grain of giant (5 m)"}},
     {"TooManySpheres", "grading: fine\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump}\n\n",
-     {"3:13: experiment.payload_t: about 40069.6 million spheres (4 dumps of 300 t of fine), more than the 2 million allowed; lower payload_t or dumps, or take a grading without its finest part"}},
+     {"3:13: experiment.payload_t: about 40069.6 million spheres (4 dumps of 300 t of fine), more than the 2 million allowed; lower payload_t or dumps, or leave out the finest rock with grading_from_m"}},
     {"LiftTooHeavy", "grading: lab\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: repose_lift, mass_kg: 500}\n",
      {"3:42: experiment.mass_kg: 500 kg are 0.181 m3 of solid rock, the container of 0.0577 m3 holds at most 0.0358 m3 (0.62 of it); lower mass_kg or enlarge the container"}},
     {"LiftDefaultFitsNot", "grading: lab\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: repose_lift, container: {height_m: 0.1}}\n",
