@@ -14,6 +14,7 @@
 #include "cli/commands.h"
 #include "scree_version.h"
 #include "sim/material/input_bytes.h"
+#include "sim/scene/scenario_values.h"
 
 volatile std::sig_atomic_t interrupted = 0;
 
@@ -46,6 +47,19 @@ Examples:
   scree effects breakage                                 an effect that a scenario can switch on
   scree schema > scenario.schema.json                    for editors that know JSON Schema
 )";
+
+// The first word of the command line that looks like an option of the subcommand and is none; empty: there is
+// none.
+std::string no_such_option(const CLI::App& app) {
+  if (app.get_subcommands().empty()) return "";
+  std::vector<std::string> options;
+  for (const CLI::Option* option : app.get_subcommands().front()->get_options())
+    for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  for (const std::string& word : app.remaining(true))
+    if (word.starts_with("--"))
+      return fmt::format("no option {}{}", scree::one_line(word), scree::suggestion(word, options));
+  return "";
+}
 
 }  // namespace
 
@@ -98,7 +112,13 @@ int main(int argc, char** argv) {
                  fmt::join(names, ", "));
       return kBadInput;
     }
-    fmt::print(stderr, "scree: {} (see scree --help)\n", scree::one_line(error.what()));
+    const std::string command =
+        app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name();
+    if (const std::string why = no_such_option(app); !why.empty())
+      fmt::print(stderr, "scree {}: {}; see scree {} --help\n", command, why, command);
+    else
+      fmt::print(stderr, "scree: {} (see scree{}{} --help)\n", scree::one_line(error.what()),
+                 command.empty() ? "" : " ", command);
     return kBadInput;
   }
 

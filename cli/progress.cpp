@@ -22,7 +22,7 @@ std::string spell_duration(double seconds) {
 ProgressDisplay::ProgressDisplay(std::vector<std::uint64_t> seeds)
     : seeds_(std::move(seeds)),
       progress_(seeds_.size()),
-      first_share_(seeds_.size(), -1),
+      before_(seeds_.size()),
       start_(std::chrono::steady_clock::now()),
       drawn_(start_),
       terminal_(isatty(STDERR_FILENO) != 0) {}
@@ -30,7 +30,7 @@ ProgressDisplay::ProgressDisplay(std::vector<std::uint64_t> seeds)
 void ProgressDisplay::update(std::size_t seed_index, const RunProgress& progress) {
   const std::lock_guard lock(mutex_);
   progress_[seed_index] = progress;
-  if (first_share_[seed_index] < 0) first_share_[seed_index] = progress.share;
+  if (before_[seed_index].share < 0) before_[seed_index] = {progress.share, progress.particle_steps};
   const auto now = std::chrono::steady_clock::now();
   if (std::chrono::duration<double>(now - drawn_).count() < (terminal_ ? kTerminalInterval : kPlainInterval))
     return;
@@ -46,7 +46,10 @@ void ProgressDisplay::draw(bool last) {
     steps += p.particle_steps;
     if (p.share > 0 && p.share < 1 && (shown->share == 0 || shown->share >= 1)) shown = &p;
   }
-  for (const double first : first_share_) before += std::max(first, 0.0) / static_cast<double>(seeds_.size());
+  for (const Before& first : before_) {
+    before += std::max(first.share, 0.0) / static_cast<double>(seeds_.size());
+    steps -= first.steps;
+  }
   const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const std::string left = share - before > 0.02
                                ? "about " + spell_duration(elapsed * (1 - share) / (share - before)) + " left"

@@ -24,7 +24,11 @@ class ProgressDisplay {
   void draw(bool last);
   std::vector<std::uint64_t> seeds_;
   std::vector<RunProgress> progress_;
-  std::vector<double> first_share_;  // of a seed that goes on: what was done before
+  // What was done of a seed that goes on; a share below 0: not known yet.
+  struct Before {
+    double share = -1, steps = 0;
+  };
+  std::vector<Before> before_;
   std::chrono::steady_clock::time_point start_, drawn_;
   bool terminal_;
   bool line_open_ = false;

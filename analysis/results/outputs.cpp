@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <regex>
@@ -111,6 +112,12 @@ std::string output_name(const std::string& quantity) {
   if (quantity == "toe_width") return "point1_toe_width_m";
   static const std::regex diameter("d[0-9]+");
   return std::regex_match(quantity, diameter) ? quantity + "_m" : quantity;
+}
+
+// A name as outputs are written: chi_S1 for Chi_s1.
+std::string in_our_case(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+  return std::regex_replace(name, std::regex("_s([0-9])"), "_S$1");
 }
 
 }  // namespace
@@ -258,6 +265,8 @@ std::string why_not_given(const OutputScope& scope, const std::string& output) {
                                   : fmt::format(", and keeps the pile after loads {} (output.after_dumps) "
                                                 "and the finished one, without '_dump'",
                                                 fmt::join(scope.after_dumps, ", ")));
+  if (const std::string other = in_our_case(output); other != output && given(scope, other) == Given::yes)
+    return fmt::format("did you mean '{}'?", other);
   std::vector<std::string> names = plain_names(scope.experiment);
   if (scope.measured) std::erase_if(names, is_of_the_run);
   if (has_sections(scope.experiment))

@@ -110,6 +110,7 @@ TEST_F(DatasetFile, WrongRowsAreNamedByLine) {
               HasSubstr("observables.csv:3: heap/angle_deg: no uncertainty. Give"));
   EXPECT_THAT(row("hea,angle_deg,25,deg,,,1"),
               HasSubstr("observables.csv:3: no experiment 'hea' (did you mean 'heap'?)"));
+  EXPECT_THAT(row("dump,Chi_s1,-0.6,,,,0.1"), HasSubstr("did you mean 'chi_S1'?"));
   EXPECT_THAT(row("heap,chi_S1,25,,,,1"), HasSubstr("type repose_lift does not give it"));
   EXPECT_THAT(row("dump,chi_S7,1,,,,1"), HasSubstr("cuts the slope into 6 sections"));
   EXPECT_THAT(row("dump,chi_S4of3,1,,,,1"), HasSubstr("and 3 (output.further_sections)"));
