@@ -144,9 +144,9 @@ std::string comparison_table(const std::vector<Comparison>& comparison) {
         html_escaped(kind_in_words(reference.kind)), html_escaped(reference.case_name),
         relation_sign(reference),
         value_cell(reference.quantity, reference.value, reference.std, reference.unit) +
-            (reference.upper
-                 ? " to " + value_cell(reference.quantity, *reference.upper, std::nullopt, reference.unit)
-                 : std::string()),
+            (reference.upper ? " to " + value_cell(reference.quantity, *reference.upper, reference.upper_std,
+                                                   reference.unit)
+                             : std::string()),
         value_cell(reference.quantity, row.simulated, row.simulated_std, reference.unit),
         row.z ? decimals_text(*row.z, 1) : "–", shown.style, shown.words, html_escaped(reference.source));
   }
