@@ -151,9 +151,14 @@ std::string heap_table(const RunResult& result) {
   for (std::size_t k = 0; k < kHeapRings; ++k) {
     rings += fmt::format("<tr><td class=\"word\">ring {}</td>", k + 1);
     rings += cell("mass_share", [k](const HeapShape& heap) { return heap.mass_share[k]; });
-    rings += cell("chi", [k](const HeapShape& heap) { return heap.rings.sections[k].chi; });
-    rings +=
-        cell("d50_rel", [k](const HeapShape& heap) { return heap.rings.sections[k].d50_rel; }) + "</tr>\n";
+    rings += cell("chi", [k](const HeapShape& heap) {
+      return of_ring(heap, k, [](const Section& s) { return s.chi; });
+    });
+    rings += cell("d50_rel",
+                  [k](const HeapShape& heap) {
+                    return of_ring(heap, k, [](const Section& s) { return s.d50_rel; });
+                  }) +
+             "</tr>\n";
     form += cell("profile", [k](const HeapShape& heap) { return heap.profile[k]; });
   }
   return "<h2>The heap</h2>\n<p>Rings in plan of equal width, the first in the middle, the last out to the "
