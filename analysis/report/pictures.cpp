@@ -213,8 +213,10 @@ std::vector<Picture> draw_pile(const RunResult& result, const SceneFacts& scene,
   std::vector<Picture> pictures;
   const auto draw = [&](const View& view, const char* name, const std::string& title,
                         const std::string& caption) {
-    run_gnuplot(script(view, range), folder / name);
-    pictures.push_back({title, folder / name, caption});
+    add_picture(pictures, [&] {
+      run_gnuplot(script(view, range), folder / name);
+      return Picture{title, folder / name, caption};
+    });
   };
   if (result.bench_height > 0) {
     draw(cut_view(result, scene, *seed, range.high), "pile_cut.png", "Cut through the pile",

@@ -96,10 +96,15 @@ std::vector<Picture> draw_inside_of(const RunResult& result, const std::filesyst
   const SeedResult& seed = result.seeds.front();
   const VerticalSection& section = seed.inside->section;
   if (reaches(seed.final_state, section))
-    pictures.push_back(draw_layers(seed.final_state.grains, seed.fixed, section, folder / "layers.png"));
-  if (shows_rock(*seed.inside)) pictures.push_back(draw_inside(*seed.inside, folder / "inside.png"));
+    add_picture(pictures, [&] {
+      return draw_layers(seed.final_state.grains, seed.fixed, section, folder / "layers.png");
+    });
+  if (shows_rock(*seed.inside))
+    add_picture(pictures, [&] { return draw_inside(*seed.inside, folder / "inside.png"); });
   if (seed.flow && seed.flow->liveliest() && reaches(*seed.flow->liveliest(), section))
-    pictures.push_back(draw_velocity(*seed.flow->liveliest(), seed.fixed, section, folder / "velocity.png"));
+    add_picture(pictures, [&] {
+      return draw_velocity(*seed.flow->liveliest(), seed.fixed, section, folder / "velocity.png");
+    });
   return pictures;
 }
 
@@ -255,15 +260,22 @@ result.</dd>
 
 }  // namespace
 
-void write_report(const RunResult& result, const std::filesystem::path& folder, const SceneFacts& scene) {
+std::vector<std::string> write_report(const RunResult& result, const std::filesystem::path& folder,
+                                      const SceneFacts& scene) {
   const std::filesystem::path pictures = folder / "pictures";
   std::filesystem::create_directories(pictures);
+  std::vector<std::string> missing;
+  const auto shown = [&](const char* heading, const std::vector<Picture>& drawn) {
+    for (const Picture& picture : drawn)
+      if (!picture.why_missing.empty()) missing.push_back(picture.why_missing);
+    return figures(heading, drawn);
+  };
   std::string page = failures_box(result) + lead_paragraphs(result) + notes_box(result);
-  page += figures("The pile", draw_pile(result, scene, pictures));
+  page += shown("The pile", draw_pile(result, scene, pictures));
   if (!result.comparison.empty())
     page += "<h2>Held against printed values</h2>\n" + comparison_table(result.comparison);
-  page += figures("Charts", draw_charts(result, scene, pictures));
-  page += figures("Inside the pile, and the flow", draw_inside_of(result, pictures)) + inside_table(result);
+  page += shown("Charts", draw_charts(result, scene, pictures));
+  page += shown("Inside the pile, and the flow", draw_inside_of(result, pictures)) + inside_table(result);
   page += section_tables(result) + lateral_table(result);
   if (std::any_of(result.seeds.begin(), result.seeds.end(),
                   [](const SeedResult& seed) { return seed.heap.has_value(); }))
@@ -273,6 +285,7 @@ void write_report(const RunResult& result, const std::filesystem::path& folder, 
       fmt::format("Simulated with scree {}, scenario {}", result.version, result.scenario);
   write_text_file(folder / "report.html",
                   html_page(result.title.empty() ? result.scenario : result.title, under, page));
+  return missing;
 }
 
 }  // namespace scree

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 
 #include "analysis/report/report_text.h"
 
@@ -154,8 +155,13 @@ std::string comparison_table(const std::vector<Comparison>& comparison) {
 }
 
 std::string figure(const Picture& picture) {
+  if (!picture.why_missing.empty())
+    return fmt::format("<p class=\"notes\" role=\"alert\">A picture is missing: {}</p>\n",
+                       html_escaped(picture.why_missing));
   std::ifstream in(picture.file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  if (!in || bytes.empty())
+    throw std::runtime_error(fmt::format("cannot read the picture {}", picture.file.string()));
   const bool svg = picture.file.extension() == ".svg";
   const char* kind = svg ? "svg+xml" : picture.file.extension() == ".jpg" ? "jpeg" : "png";
   return fmt::format(
