@@ -46,14 +46,21 @@ HeapShape measure_heap_shape(const std::vector<Grain>& heap, const std::vector<G
       outside += grain.mass;
   }
   HeapShape shape;
-  shape.rings = tabulate(rings, original, measured);
-  shape.rings.mass_outside = outside;
+  shape.spread_95 = mass_quantile(std::move(distances), 0.95) / std::cbrt(volume);
+  if (std::isfinite(read.radius)) {
+    shape.rings = tabulate(rings, original, measured);
+    shape.rings.mass_outside = outside;
+  }
   for (std::size_t k = 0; k < kHeapRings; ++k) {
-    shape.mass_share[k] = shape.rings.sections[k].mass / mass;
+    shape.mass_share[k] = of_ring(shape, k, [](const Section& ring) { return ring.mass; }) / mass;
     shape.profile[k] = surface_at(read, kProfilePlaces[k] * read.radius) / read.height;
   }
-  shape.spread_95 = mass_quantile(std::move(distances), 0.95) / std::cbrt(volume);
   return shape;
+}
+
+double of_ring(const HeapShape& heap, std::size_t k, const std::function<double(const Section&)>& value) {
+  return k < heap.rings.sections.size() ? value(heap.rings.sections[k])
+                                        : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace scree

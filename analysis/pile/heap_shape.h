@@ -1,5 +1,7 @@
 #pragma once
 // What a heap of a repose test says beside its angle: gradings of rings, form of its surface, runout.
+#include <functional>
+
 #include "analysis/pile/repose_angle.h"
 #include "analysis/pile/segregation.h"
 
@@ -11,9 +13,10 @@ inline constexpr double kProfilePlaces[] = {0.25, 0.50, 0.75};  // r / R
 /// Rings in plan about the heap's axis, of equal steps of radius out to its radius R, and its surface.
 struct HeapShape {
   SectionTable rings;      ///< ring1 (the middle) to ring3; x_over_l is r / R of the ring's middle;
-                           ///< mass_outside is what lies beyond R
-  double mass_share[3]{};  ///< of each ring, of all mass of the heap
-  double profile[3]{};     ///< height of the mean surface over the heap's height at r / R = 0.25, 0.5, 0.75
+                           ///< mass_outside is what lies beyond R; no rings where there is no R
+  double mass_share[3]{};  ///< of each ring, of all mass of the heap; NaN where there is no R
+  double profile[3]{};     ///< height of the mean surface over the heap's height at r / R = 0.25, 0.5, 0.75;
+                           ///< NaN where there is no R
   double spread_95 = 0;    ///< radius that holds 95 % of the mass over the cube root of the solid's volume
 };
 
@@ -22,5 +25,8 @@ struct HeapShape {
 /// when `heap` or `original` is empty.
 HeapShape measure_heap_shape(const std::vector<Grain>& heap, const std::vector<Grain>& original,
                              const ReposeAngle& read, const Measurement& measured = {});
+
+/// A number of ring k (0 in the middle); NaN where the heap has no rings.
+double of_ring(const HeapShape& heap, std::size_t k, const std::function<double(const Section&)>& value);
 
 }  // namespace scree

@@ -185,7 +185,8 @@ std::array<double, 2> fitted_flank(const Rings& rings, double height) {
 ReposeAngle measure_repose(const std::vector<Grain>& heap, double floor) {
   ReposeAngle result;
   result.angle = result.height_over_radius = result.half_coverage = result.flank_height = nan;
-  result.height = result.radius = nan;
+  result.height = result.radius = result.runaways = nan;
+  std::fill(std::begin(result.radii), std::end(result.radii), nan);
   if (heap.empty()) return result;
   const double x0 = weighted_median(heap, 0), y0 = weighted_median(heap, 1);
   result.axis[0] = x0, result.axis[1] = y0;
@@ -193,9 +194,14 @@ ReposeAngle measure_repose(const std::vector<Grain>& heap, double floor) {
   for (const Grain& grain : heap)
     circles.push_back({grain.position.x() - x0, grain.position.y() - y0, 0.5 * grain.diameter});
   constexpr std::array<std::array<double, 2>, 4> directions{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
-  for (int k = 0; k < 4; ++k) result.radii[k] = reach(circles, directions[k][0], directions[k][1]);
-  result.radius = std::accumulate(std::begin(result.radii), std::end(result.radii), 0.0) / 4;
+  double radii[4];
+  for (int k = 0; k < 4; ++k) radii[k] = reach(circles, directions[k][0], directions[k][1]);
+  const double longest = *std::max_element(std::begin(radii), std::end(radii));
+  if (!(longest > 0)) return result;  // the axis lies in a gap: where the heap ends is not known
+  std::copy(std::begin(radii), std::end(radii), std::begin(result.radii));
+  result.radius = std::accumulate(std::begin(radii), std::end(radii), 0.0) / 4;
 
+  result.runaways = 0;
   std::vector<const Grain*> inside;
   for (std::size_t i = 0; i < heap.size(); ++i) {
     const bool runaway =
@@ -205,9 +211,7 @@ ReposeAngle measure_repose(const std::vector<Grain>& heap, double floor) {
   result.height = top_of(inside, floor);
   result.height_over_radius = degrees(std::atan2(result.height, result.radius));
 
-  const double extent = 1.5 * *std::max_element(std::begin(result.radii), std::end(result.radii));
-  if (!(extent > 0)) return result;
-  const Rings rings = rings_of(heap, x0, y0, floor, extent);
+  const Rings rings = rings_of(heap, x0, y0, floor, 1.5 * longest);
   result.half_coverage = degrees(std::atan2(result.height, falls_below(rings, rings.covered, 0.5)));
   const auto [fall, at_axis] = fitted_flank(rings, height_within(rings, kAxisShare * result.radius));
   result.angle = degrees(std::atan(fall));

@@ -17,14 +17,16 @@ struct ReposeAngle {
   double height = 0;              ///< H, top of the cone, m
   double radius = 0;              ///< mean R, m
   double radii[4] = {0, 0, 0, 0};  ///< +x, +y, -x, -y
-  int runaways = 0;                ///< grains beyond R, left out
+  double runaways = 0;             ///< number of grains beyond R, left out
   double axis[2] = {0, 0};         ///< x and y of the axis, m
   std::vector<double> surface;  ///< mean height of what is seen from above, m over the floor, of rings about
                                 ///< the axis, `surface_step` m wide
   double surface_step = 0;
 };
 
-/// Heap on a floor at z = `floor`; the axis is found from the heap (mass-weighted median of x and y).
+/// Heap on a floor at z = `floor`; the axis is found from the heap (mass-weighted median of x and y). What
+/// cannot be read is NaN: everything but the axis where it lies in a gap between grains, so that there is no
+/// R.
 ReposeAngle measure_repose(const std::vector<Grain>& heap, double floor = 0.0);
 
 }  // namespace scree

@@ -77,8 +77,16 @@ void run_gnuplot(const std::string& script, const std::filesystem::path& output)
   std::string words{std::istreambuf_iterator<char>(in), {}};
   for (char& c : words)
     if (c == '\n') c = ' ';
-  throw std::runtime_error(
+  throw GnuplotFailed(
       fmt::format("gnuplot failed on {} (exit status {}): {}", output.string(), status, words));
+}
+
+void add_picture(std::vector<Picture>& pictures, const std::function<Picture()>& draw) {
+  try {
+    pictures.push_back(draw());
+  } catch (const GnuplotFailed& failed) {
+    pictures.push_back({"", "", "", failed.what()});
+  }
 }
 
 }  // namespace scree

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "analysis/pile/heaviest_cut.h"
 #include "analysis/report/section_canvas.h"
 #include "analysis/results/summary.h"
 
@@ -81,29 +82,6 @@ double ceiling_to(double value, double step) {
   return std::ceil(value / step) * step;
 }
 
-/// The place across the y axis where a cut of this depth shows most rock.
-double heaviest_cut(const std::vector<Grain>& grains, double depth) {
-  double best = 0, most = -1;
-  double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
-  for (const Grain& grain : grains) {
-    low = std::min(low, grain.position.y());
-    high = std::max(high, grain.position.y());
-  }
-  constexpr int steps = 40;
-  for (int i = 0; i <= steps; ++i) {
-    const double cut = low + (high - low) * i / steps;
-    double mass = 0;
-    for (const Grain& grain : grains)
-      if (std::abs(grain.position.y() - cut) < depth) mass += grain.mass;
-    // Of equal places the one nearest the middle of the model.
-    if (mass > 1.02 * most || (mass > 0.98 * most && std::abs(cut) < std::abs(best))) {
-      best = cut;
-      most = std::max(mass, most);
-    }
-  }
-  return best;
-}
-
 /// Room around the discs, with the bench when there is one.
 SectionFrame frame_around(const std::vector<Disc>& discs, double bench_height) {
   SectionFrame frame{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest(), 0,
@@ -170,7 +148,7 @@ View cut_view(const RunResult& result, const SceneFacts& scene, const SeedResult
   for (const Grain& grain : grains) {
     moment += grain.mass * grain.position.x();
     mass += grain.mass;
-    if (grain.position.y() < cut || grain.position.y() > cut + depth) continue;
+    if (!in_cut(grain, cut, depth)) continue;
     view.discs.push_back(
         {grain.position.x(), grain.position.z(), grain.position.y(), grain.diameter / 2, grain.diameter});
   }
@@ -235,8 +213,10 @@ std::vector<Picture> draw_pile(const RunResult& result, const SceneFacts& scene,
   std::vector<Picture> pictures;
   const auto draw = [&](const View& view, const char* name, const std::string& title,
                         const std::string& caption) {
-    run_gnuplot(script(view, range), folder / name);
-    pictures.push_back({title, folder / name, caption});
+    add_picture(pictures, [&] {
+      run_gnuplot(script(view, range), folder / name);
+      return Picture{title, folder / name, caption};
+    });
   };
   if (result.bench_height > 0) {
     draw(cut_view(result, scene, *seed, range.high), "pile_cut.png", "Cut through the pile",

@@ -1,7 +1,9 @@
 #pragma once
 // Pictures of a run, drawn by gnuplot: views of the pile as PNG, charts as SVG.
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +17,7 @@ struct Picture {
   std::string title;
   std::filesystem::path file;  ///< .png, .jpg or .svg
   std::string caption;         ///< one sentence
+  std::string why_missing{};   ///< gnuplot's words where it refused this one; empty: the picture is there
 };
 
 /// What a run's result does not say about its scene.
@@ -24,19 +27,28 @@ struct SceneFacts {
 };
 
 /// Views of the first seed's pile, each grain a disc coloured by its diameter: a cut through the heaviest
-/// part seen along the crest, and the slope seen from the toe (end dumping only). None without grains. Throws
-/// std::runtime_error, see run_gnuplot.
+/// part seen along the crest, and the slope seen from the toe (end dumping only). None without grains. Drawn
+/// by add_picture().
 std::vector<Picture> draw_pile(const RunResult& result, const SceneFacts& scene,
                                const std::filesystem::path& folder);
 
 /// Charts over all seeds: segregation degree, relative diameters, passing curves, slope profile, repose
-/// angle; each only when the run has its numbers. Throws std::runtime_error, see run_gnuplot.
+/// angle; each only when the run has its numbers. Drawn by add_picture().
 std::vector<Picture> draw_charts(const RunResult& result, const SceneFacts& scene,
                                  const std::filesystem::path& folder);
 
+/// Gnuplot ran and refused a picture.
+class GnuplotFailed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// Runs a gnuplot script that draws one picture; `output` is set here. Throws std::runtime_error with the
-/// package to install when gnuplot is missing, with gnuplot's own words when it fails.
+/// package to install when gnuplot is missing, GnuplotFailed with gnuplot's own words when it fails.
 void run_gnuplot(const std::string& script, const std::filesystem::path& output);
+
+/// Adds what `draw` gives, or why gnuplot refused it: one picture must not cost a long run its report.
+void add_picture(std::vector<Picture>& pictures, const std::function<Picture()>& draw);
 
 /// Terminal, axes and grid of every chart (SVG), size in pixels.
 std::string chart_terminal(int width, int height);

@@ -96,10 +96,15 @@ std::vector<Picture> draw_inside_of(const RunResult& result, const std::filesyst
   const SeedResult& seed = result.seeds.front();
   const VerticalSection& section = seed.inside->section;
   if (reaches(seed.final_state, section))
-    pictures.push_back(draw_layers(seed.final_state.grains, seed.fixed, section, folder / "layers.png"));
-  if (shows_rock(*seed.inside)) pictures.push_back(draw_inside(*seed.inside, folder / "inside.png"));
+    add_picture(pictures, [&] {
+      return draw_layers(seed.final_state.grains, seed.fixed, section, folder / "layers.png");
+    });
+  if (shows_rock(*seed.inside))
+    add_picture(pictures, [&] { return draw_inside(*seed.inside, folder / "inside.png"); });
   if (seed.flow && seed.flow->liveliest() && reaches(*seed.flow->liveliest(), section))
-    pictures.push_back(draw_velocity(*seed.flow->liveliest(), seed.fixed, section, folder / "velocity.png"));
+    add_picture(pictures, [&] {
+      return draw_velocity(*seed.flow->liveliest(), seed.fixed, section, folder / "velocity.png");
+    });
   return pictures;
 }
 
@@ -151,9 +156,14 @@ std::string heap_table(const RunResult& result) {
   for (std::size_t k = 0; k < kHeapRings; ++k) {
     rings += fmt::format("<tr><td class=\"word\">ring {}</td>", k + 1);
     rings += cell("mass_share", [k](const HeapShape& heap) { return heap.mass_share[k]; });
-    rings += cell("chi", [k](const HeapShape& heap) { return heap.rings.sections[k].chi; });
-    rings +=
-        cell("d50_rel", [k](const HeapShape& heap) { return heap.rings.sections[k].d50_rel; }) + "</tr>\n";
+    rings += cell("chi", [k](const HeapShape& heap) {
+      return of_ring(heap, k, [](const Section& s) { return s.chi; });
+    });
+    rings += cell("d50_rel",
+                  [k](const HeapShape& heap) {
+                    return of_ring(heap, k, [](const Section& s) { return s.d50_rel; });
+                  }) +
+             "</tr>\n";
     form += cell("profile", [k](const HeapShape& heap) { return heap.profile[k]; });
   }
   return "<h2>The heap</h2>\n<p>Rings in plan of equal width, the first in the middle, the last out to the "
@@ -250,15 +260,22 @@ result.</dd>
 
 }  // namespace
 
-void write_report(const RunResult& result, const std::filesystem::path& folder, const SceneFacts& scene) {
+std::vector<std::string> write_report(const RunResult& result, const std::filesystem::path& folder,
+                                      const SceneFacts& scene) {
   const std::filesystem::path pictures = folder / "pictures";
   std::filesystem::create_directories(pictures);
+  std::vector<std::string> missing;
+  const auto shown = [&](const char* heading, const std::vector<Picture>& drawn) {
+    for (const Picture& picture : drawn)
+      if (!picture.why_missing.empty()) missing.push_back(picture.why_missing);
+    return figures(heading, drawn);
+  };
   std::string page = failures_box(result) + lead_paragraphs(result) + notes_box(result);
-  page += figures("The pile", draw_pile(result, scene, pictures));
+  page += shown("The pile", draw_pile(result, scene, pictures));
   if (!result.comparison.empty())
     page += "<h2>Held against printed values</h2>\n" + comparison_table(result.comparison);
-  page += figures("Charts", draw_charts(result, scene, pictures));
-  page += figures("Inside the pile, and the flow", draw_inside_of(result, pictures)) + inside_table(result);
+  page += shown("Charts", draw_charts(result, scene, pictures));
+  page += shown("Inside the pile, and the flow", draw_inside_of(result, pictures)) + inside_table(result);
   page += section_tables(result) + lateral_table(result);
   if (std::any_of(result.seeds.begin(), result.seeds.end(),
                   [](const SeedResult& seed) { return seed.heap.has_value(); }))
@@ -268,6 +285,7 @@ void write_report(const RunResult& result, const std::filesystem::path& folder, 
       fmt::format("Simulated with scree {}, scenario {}", result.version, result.scenario);
   write_text_file(folder / "report.html",
                   html_page(result.title.empty() ? result.scenario : result.title, under, page));
+  return missing;
 }
 
 }  // namespace scree

@@ -228,6 +228,11 @@ Picture passing_chart(const RunResult& result, const std::filesystem::path& fold
           "the seeds."};
 }
 
+/// A single place makes no line, and its x no range.
+bool has_profile_line(const SeedResult& seed) {
+  return seed.profile.size() > 1;
+}
+
 Picture profile_chart(const RunResult& result, const SceneFacts& scene, const std::filesystem::path& folder) {
   std::string blocks, plots;
   std::vector<double> angles;
@@ -235,7 +240,7 @@ Picture profile_chart(const RunResult& result, const SceneFacts& scene, const st
   for (std::size_t i = 0; i < result.seeds.size(); ++i) {
     const SeedResult& seed = result.seeds[i];
     if (seed.slope_angle) angles.push_back(*seed.slope_angle);
-    if (seed.profile.empty()) continue;
+    if (!has_profile_line(seed)) continue;
     blocks += fmt::format("$s{} << END\n", i);
     if (const auto line = slope_line(seed.profile, result.bench_height)) x += line->x, z += line->z, ++count;
     for (const auto& point : seed.profile) {
@@ -277,19 +282,21 @@ Picture profile_chart(const RunResult& result, const SceneFacts& scene, const st
           "Surface of the pile along the dump axis with the straight line fitted to its middle."};
 }
 
-Picture repose_chart(const RunResult& result, const std::filesystem::path& folder) {
-  struct Row {
-    std::string label;
-    Point value;
-    const char* colour;
-  };
-  std::vector<Row> rows;
+/// A line of the chart of repose angles.
+struct AngleRow {
+  std::string label;
+  Point value;
+  const char* colour;
+};
+
+std::vector<AngleRow> angle_rows(const RunResult& result) {
+  std::vector<AngleRow> rows;
   const auto reading = [&](const char* label, double ReposeAngle::*field) {
     std::vector<double> values;
     for (const SeedResult& seed : result.seeds)
       if (seed.repose) values.push_back((*seed.repose).*field);
     const MeanStd both = mean_std(values);
-    rows.push_back({label, {both.mean, 0, both.n > 1 ? both.std : 0}, "#0072b2"});
+    if (both.n > 0) rows.push_back({label, {both.mean, 0, both.n > 1 ? both.std : 0}, "#0072b2"});
   };
   reading("this run: slope of the flank", &ReposeAngle::angle);
   reading("this run: height over radius", &ReposeAngle::height_over_radius);
@@ -301,6 +308,10 @@ Picture repose_chart(const RunResult& result, const std::filesystem::path& folde
                     {reference.value, 0, reference.std.value_or(0)},
                     reference.kind == "measured" ? "#000000" : "#d55e00"});
   }
+  return rows;
+}
+
+Picture repose_chart(const std::vector<AngleRow>& rows, const std::filesystem::path& folder) {
   std::string blocks = "$a << END\n", ticks;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     blocks += fmt::format("{:.5g} {} {:.5g} {}\n", rows[i].value.x, -static_cast<int>(i), rows[i].value.std,
@@ -326,14 +337,14 @@ std::vector<Picture> draw_charts(const RunResult& result, const SceneFacts& scen
   const auto any = [&](auto has) { return std::any_of(result.seeds.begin(), result.seeds.end(), has); };
   std::vector<Picture> pictures;
   if (!simulated(result, [](const Section& s) { return s.chi; }).points.empty()) {
-    pictures.push_back(chi_chart(result, folder));
-    pictures.push_back(diameters_chart(result, folder));
-    if (section_layout(result, 0)->sieves.size() > 1) pictures.push_back(passing_chart(result, folder));
+    add_picture(pictures, [&] { return chi_chart(result, folder); });
+    add_picture(pictures, [&] { return diameters_chart(result, folder); });
+    if (section_layout(result, 0)->sieves.size() > 1)
+      add_picture(pictures, [&] { return passing_chart(result, folder); });
   }
-  if (any([](const SeedResult& seed) { return !seed.profile.empty(); }))
-    pictures.push_back(profile_chart(result, scene, folder));
-  if (any([](const SeedResult& seed) { return seed.repose.has_value(); }))
-    pictures.push_back(repose_chart(result, folder));
+  if (any(has_profile_line)) add_picture(pictures, [&] { return profile_chart(result, scene, folder); });
+  if (const auto rows = angle_rows(result); !rows.empty())
+    add_picture(pictures, [&] { return repose_chart(rows, folder); });
   return pictures;
 }
 

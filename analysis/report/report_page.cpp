@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 
 #include "analysis/report/report_text.h"
 
@@ -144,9 +145,9 @@ std::string comparison_table(const std::vector<Comparison>& comparison) {
         html_escaped(kind_in_words(reference.kind)), html_escaped(reference.case_name),
         relation_sign(reference),
         value_cell(reference.quantity, reference.value, reference.std, reference.unit) +
-            (reference.upper
-                 ? " to " + value_cell(reference.quantity, *reference.upper, std::nullopt, reference.unit)
-                 : std::string()),
+            (reference.upper ? " to " + value_cell(reference.quantity, *reference.upper, reference.upper_std,
+                                                   reference.unit)
+                             : std::string()),
         value_cell(reference.quantity, row.simulated, row.simulated_std, reference.unit),
         row.z ? decimals_text(*row.z, 1) : "–", shown.style, shown.words, html_escaped(reference.source));
   }
@@ -154,8 +155,13 @@ std::string comparison_table(const std::vector<Comparison>& comparison) {
 }
 
 std::string figure(const Picture& picture) {
+  if (!picture.why_missing.empty())
+    return fmt::format("<p class=\"notes\" role=\"alert\">A picture is missing: {}</p>\n",
+                       html_escaped(picture.why_missing));
   std::ifstream in(picture.file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  if (!in || bytes.empty())
+    throw std::runtime_error(fmt::format("cannot read the picture {}", picture.file.string()));
   const bool svg = picture.file.extension() == ".svg";
   const char* kind = svg ? "svg+xml" : picture.file.extension() == ".jpg" ? "jpeg" : "png";
   return fmt::format(

@@ -23,8 +23,8 @@ std::string value_cell(std::string_view quantity, const MeanStd& value, const st
 /// Printed values beside ours with z, coloured by agreement; empty without any.
 std::string comparison_table(const std::vector<Comparison>& comparison);
 
-/// A picture with its caption, its bytes within the page; several under a heading, nothing without any. Throw
-/// std::runtime_error if a file cannot be read.
+/// A picture with its caption, its bytes within the page, or why it is missing; several under a heading,
+/// nothing without any. Throw std::runtime_error if a file cannot be read or is empty.
 std::string figure(const Picture& picture);
 std::string figures(const char* heading, const std::vector<Picture>& pictures);
 

@@ -66,15 +66,17 @@ std::vector<Comparison> compare_with_reference(const std::vector<Outputs>& seeds
         return finished_pile_instead(pile_value(row), seed);
       });
       if (simulated.n > 1) comparison.simulated_std = simulated.std;
-      const double printed_std = row.std.value_or(row.rounding / std::sqrt(3.0));
+      const bool above = meaning == Meaning::range && simulated.mean > row.upper.value();
+      const std::optional<double> stated = above ? row.upper_std : row.std;
+      const double printed_std =
+          stated.value_or((above ? row.upper_rounding : row.rounding) / std::sqrt(3.0));
       const double deviation = std::hypot(printed_std, comparison.simulated_std.value_or(0));
       double difference = simulated.mean - row.value;
       if (meaning == Meaning::range)
-        difference =
-            simulated.mean < row.value ? difference : std::max(simulated.mean - row.upper.value(), 0.0);
+        difference = above ? simulated.mean - row.upper.value() : std::min(difference, 0.0);
       if (meaning == Meaning::at_least) difference = std::min(difference, 0.0);
       if (meaning == Meaning::at_most) difference = std::max(difference, 0.0);
-      if (deviation > 0 && (row.std || comparison.simulated_std)) comparison.z = difference / deviation;
+      if (deviation > 0 && (stated || comparison.simulated_std)) comparison.z = difference / deviation;
       comparisons.push_back(std::move(comparison));
     }
   }

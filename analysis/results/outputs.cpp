@@ -142,10 +142,10 @@ Outputs outputs_of(const SeedResult& seed) {
   }
   if (seed.heap) {
     for (std::size_t k = 0; k < kHeapRings; ++k) {
-      const Section& ring = seed.heap->rings.sections[k];
-      add("chi_" + ring.name, ring.chi);
-      add("d50_rel_" + ring.name, ring.d50_rel);
-      add("mass_share_" + ring.name, seed.heap->mass_share[k]);
+      const std::string ring = fmt::format("ring{}", k + 1);
+      add("chi_" + ring, of_ring(*seed.heap, k, [](const Section& s) { return s.chi; }));
+      add("d50_rel_" + ring, of_ring(*seed.heap, k, [](const Section& s) { return s.d50_rel; }));
+      add("mass_share_" + ring, seed.heap->mass_share[k]);
       add(fmt::format("profile_{:.0f}", 100 * kProfilePlaces[k]), seed.heap->profile[k]);
     }
     add("spread_95", seed.heap->spread_95);

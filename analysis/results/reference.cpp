@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "analysis/results/results.h"
 #include "sim/material/csv_table.h"
@@ -17,8 +17,12 @@ bool joined(const ReferenceValue& row, std::vector<ReferenceValue>& values) {
     if (other.case_name != row.case_name || other.quantity != row.quantity || other.section != row.section ||
         other.kind != row.kind || other.relation != (row.relation == "min" ? "max" : "min"))
       continue;
-    other.upper = std::max(row.value, other.value);
-    other.value = std::min(row.value, other.value);
+    ReferenceValue above = row;
+    if (above.value < other.value) std::swap(above, other);
+    other.upper = above.value;
+    other.upper_std = above.std;
+    other.upper_rounding = above.rounding;
+    if (above.source != other.source) other.source += "; " + above.source;
     other.relation = "range";
     return true;
   }

@@ -72,6 +72,8 @@ struct ReferenceValue {
   std::optional<double> upper = std::nullopt;  ///< of a range; its lower end is `value`
   double rounding = 0;                         ///< half of the last digit printed; 0: derived
   int dumps = 0;  ///< number of dumps in the pile it was read from; 0: not stated
+  std::optional<double> upper_std = std::nullopt;  ///< of `upper`, as std and rounding are of `value`
+  double upper_rounding = 0;
 };
 
 /// Into how many sections the slope of a printed case was cut: told by the names top, middle, bottom (3) or
@@ -92,7 +94,8 @@ struct Comparison {
   std::optional<double> simulated_std;  ///< between seeds; none with one seed
   /// (simulated - reference) / sqrt(reference_std^2 + simulated_std^2); none when neither is known. Where
   /// none is printed, the deviation of rounding stands for it (half of the last digit over sqrt 3). Of a
-  /// bound: how far it is passed, 0 if it is kept.
+  /// bound: how far it is passed, 0 if it is kept; of a range, with the deviation of the bound that is
+  /// passed.
   std::optional<double> z;
   /// The pile with as many dumps as the printed one was not kept; the finished one stands for it.
   bool finished_instead = false;

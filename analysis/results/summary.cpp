@@ -136,10 +136,9 @@ std::size_t table_count(const RunResult& result) {
 }
 
 Json repose(const RunResult& result) {
-  const auto reading = [&](auto field) {
+  const auto reading = [&](double ReposeAngle::*field) {
     return spread(each(result, [&](const SeedResult& seed) {
-      return seed.repose ? static_cast<double>((*seed.repose).*field)
-                         : std::numeric_limits<double>::quiet_NaN();
+      return seed.repose ? (*seed.repose).*field : std::numeric_limits<double>::quiet_NaN();
     }));
   };
   return {{"angle_deg", reading(&ReposeAngle::angle)},
@@ -161,7 +160,7 @@ Json heap(const RunResult& result) {
     Json ring = {{"name", fmt::format("ring{}", k + 1)},
                  {"mass_share", reading([k](const HeapShape& h) { return h.mass_share[k]; })}};
     for (const SectionField& field : section_fields())
-      ring[field.name] = reading([&](const HeapShape& h) { return field.value(h.rings.sections[k]); });
+      ring[field.name] = reading([&](const HeapShape& h) { return of_ring(h, k, field.value); });
     rings.push_back(ring);
     profile.push_back({{"r_over_radius", kProfilePlaces[k]},
                        {"height_share", reading([k](const HeapShape& h) { return h.profile[k]; })}});
@@ -337,6 +336,8 @@ double share_in_no_section(const RunResult& result) {
 std::string why_no_repose_angle(const SeedResult& seed) {
   if (!seed.repose || std::isfinite(seed.repose->angle)) return "";
   if (!seed.at_rest) return "not at rest";
+  if (!std::isfinite(seed.repose->radius))
+    return "no radius: the middle of the heap lies in a gap between its grains";
   return "no flank: the mean surface about the heap's axis does not fall from 80 % to 20 % of its height "
          "over "
          "two rings or more";

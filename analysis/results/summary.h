@@ -26,8 +26,8 @@ std::string energy_in_words(double relative_error, bool closed);
 double share_in_no_section(const RunResult& result);
 inline constexpr double kMuchInNoSection = 0.1;  ///< above it sections do not stand for the pile
 
-/// Why the heap of a repose test has no repose angle: "not at rest" or "no flank: ..."; empty if it has one,
-/// and for other experiments.
+/// Why the heap of a repose test has no repose angle: "not at rest", "no radius: ..." or "no flank: ...";
+/// empty if it has one, and for other experiments.
 std::string why_no_repose_angle(const SeedResult& seed);
 
 /// What other programs need of a summary.json.

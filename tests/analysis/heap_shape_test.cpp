@@ -128,6 +128,21 @@ TEST(HeapShape, GivesOutputsOfARepose) {
   EXPECT_NE(why_not_given({"repose_lift", 6, {}, {}}, "chi_ring4"), "");
 }
 
+TEST(HeapShape, WithoutARadiusOnlyTheRunoutIsKnown) {
+  const double nan = std::nan("");
+  const auto heap = cone(0.6, 0.3, 500, [](double) { return 0.01; });
+  SeedResult seed;
+  seed.repose = ReposeAngle{nan, nan, nan, nan, nan, nan, {nan, nan, nan, nan}, nan, {0, 0}, {}, 0};
+  seed.heap = measure_heap_shape(heap, heap, *seed.repose);
+  EXPECT_TRUE(std::isnan(of_ring(*seed.heap, 0, [](const Section& ring) { return ring.mass; })));
+  EXPECT_TRUE(std::isnan(of_ring(*seed.heap, 0, [](const Section& ring) { return 1.0 * ring.grains; })));
+  const Outputs outputs = outputs_of(seed);
+  EXPECT_TRUE(outputs.contains("spread_95"));
+  for (const char* name : {"radius_m", "runaways", "height_m", "mass_share_ring1", "mass_share_ring3",
+                           "chi_ring1", "d50_rel_ring2", "profile_25"})
+    EXPECT_FALSE(outputs.contains(name)) << name;
+}
+
 TEST(HeapShape, NothingIsRefused) {
   EXPECT_THROW(measure_heap_shape({}, {}, {}), std::invalid_argument);
 }

@@ -8,8 +8,10 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <utility>
 
 #include "analysis/report/lateral_table.h"
+#include "analysis/report/report_page.h"
 #include "analysis/report/report_text.h"
 #include "analysis/results/summary.h"
 #include "tests/analysis/fake_run.h"
@@ -129,6 +131,76 @@ TEST(Report, ShowsAReposeTest) {
   EXPECT_THAT(page, HasSubstr("ring 3"));
   EXPECT_GT(std::filesystem::file_size(folder / "pictures" / "heap_cut.png"), 4000U);
   EXPECT_GT(std::filesystem::file_size(folder / "pictures" / "repose.svg"), 4000U);
+}
+
+TEST(Report, AProfileOfOnePlaceHasNoChart) {
+  const auto folder = fresh_folder("one_place");
+  RunResult run = fake_run();
+  for (SeedResult& seed : run.seeds) {
+    seed.profile = {{1.5, 2}};
+    seed.slope_angle.reset();
+  }
+  EXPECT_TRUE(write_report(run, folder, {45.0}).empty());
+  EXPECT_FALSE(std::filesystem::exists(folder / "pictures" / "profile.svg"));
+  run.seeds[1].profile.push_back({2.5, 1});
+  EXPECT_TRUE(write_report(run, folder, {45.0}).empty());
+  EXPECT_TRUE(std::filesystem::exists(folder / "pictures" / "profile.svg"));
+}
+
+TEST(Report, AReposeTestWithoutAReadingHasAPage) {
+  const auto folder = fresh_folder("no_reading");
+  Grain grain;
+  grain.diameter = 0.1, grain.mass = 1.4;
+  RunResult run;
+  run.seeds.resize(1);
+  SeedResult& seed = run.seeds[0];
+  for (const auto& [x, y] : {std::pair{0, 1}, {1, 3}, {2, 0}}) {  // the medians meet in a gap
+    grain.position = Vec3(x, y, 0.05);
+    seed.final_state.grains.push_back(grain);
+  }
+  seed.at_rest = true;
+  seed.repose = measure_repose(seed.final_state.grains);
+  seed.heap = measure_heap_shape(seed.final_state.grains, seed.final_state.grains, *seed.repose);
+  EXPECT_TRUE(write_report(run, folder).empty());
+  EXPECT_THAT(text_of(folder / "report.html"),
+              HasSubstr("No repose angle: no radius: the middle of the heap"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "pictures" / "repose.svg"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "pictures" / "heap_cut.png"));
+}
+
+TEST(Report, TheCutShowsRockWhereStraysLieFarToBothSides) {
+  const auto folder = fresh_folder("strays");
+  RunResult run = fake_run();
+  run.seeds.resize(1);
+  std::vector<Grain>& grains = run.seeds[0].final_state.grains;
+  grains.resize(3);
+  for (Grain& grain : grains) grain.diameter = 0.5, grain.position = Vec3(2, -0.3, 0.25);
+  grains[0].position.y() = -100;
+  grains[2].position.y() = 100;
+  const auto drawn = draw_pile(run, {45.0}, folder);
+  ASSERT_EQ(drawn.size(), 2u);
+  for (const Picture& picture : drawn) EXPECT_EQ(picture.why_missing, "");
+}
+
+TEST(Report, OneRefusedPictureDoesNotCostThePage) {
+  const auto folder = fresh_folder("refused");
+  std::ofstream(folder / "gnuplot") << "#!/bin/sh\necho 'no <range>' >&2\nexit 1\n";
+  std::filesystem::permissions(folder / "gnuplot", std::filesystem::perms::owner_all);
+  const OnlyPath fake(folder);
+  const std::vector<std::string> missing = write_report(fake_run(), folder, {45.0});
+  EXPECT_EQ(missing.size(), 6u) << "two views and four charts";
+  EXPECT_THAT(missing[0], HasSubstr("pile_cut.png (exit status 1): no <range>"));
+  const std::string page = text_of(folder / "report.html");
+  EXPECT_THAT(page, HasSubstr("A picture is missing: gnuplot failed on"));
+  EXPECT_THAT(page, HasSubstr("profile.svg (exit status 1): no &lt;range&gt;"));
+  EXPECT_THAT(page, HasSubstr("<h2>The run</h2>"));
+}
+
+TEST(Report, APictureThatCannotBeReadIsRefused) {
+  const auto folder = fresh_folder("unreadable");
+  EXPECT_THROW(figure({"None", folder / "none.svg", "It is not there."}), std::runtime_error);
+  std::ofstream(folder / "empty.svg").flush();
+  EXPECT_THROW(figure({"Empty", folder / "empty.svg", "It holds nothing."}), std::runtime_error);
 }
 
 TEST(ReportText, LeadSaysWhyThereIsNoReposeAngle) {

@@ -101,6 +101,19 @@ TEST(Summary, HasTheReposeAngleOfEachSeed) {
   EXPECT_TRUE(summary["sections"].empty());
 }
 
+TEST(Summary, AHeapWithoutARadiusHasNoRings) {
+  const auto file = fresh_folder("no_radius") / "summary.json";
+  RunResult run;
+  run.seeds.resize(1);
+  run.seeds[0].repose = measure_repose({});
+  run.seeds[0].heap = HeapShape{};
+  write_summary(run, file);
+  const json summary = read(file);
+  EXPECT_TRUE(summary["repose"]["radius_m"]["mean"].is_null());
+  EXPECT_TRUE(summary["repose"]["runaways"]["mean"].is_null());
+  EXPECT_TRUE(summary["heap"]["rings"][0]["grains"]["mean"].is_null());
+}
+
 TEST(Summary, SectionsCsvHasARowForEachSeedTableAndSection) {
   const auto file = fresh_folder("csv") / "sections.csv";
   RunResult run = fake_run();

@@ -94,6 +94,9 @@ TEST(Reference, HasThePrintedRangesOfSections) {
   ASSERT_TRUE(scatter);
   EXPECT_DOUBLE_EQ(scatter->value, 0.22);  // line 1812
   EXPECT_DOUBLE_EQ(scatter->upper.value(), 0.48);
+  // Of five repeats: the value over sqrt 8.
+  EXPECT_NEAR(scatter->std.value(), 0.22 / std::sqrt(8), 1e-6);
+  EXPECT_NEAR(scatter->upper_std.value(), 0.48 / std::sqrt(8), 1e-6);
   for (const char* section : {"S1", "S2", "S3", "S4", "S5", "S6"}) {
     const auto* across = find(rows, "lateral_S8", "lateral_chi_std", section, "pfc3d");
     ASSERT_TRUE(across);
@@ -105,6 +108,23 @@ TEST(Reference, HasThePrintedRangesOfSections) {
     EXPECT_NEAR(near->value, measured->value - 0.1, 1e-5);  // line 1825, six digits
     EXPECT_NEAR(near->upper.value(), measured->value + 0.1, 1e-5);
   }
+}
+
+TEST(Reference, BoundsOfARangeKeepWhatIsTheirs) {
+  const auto file = std::filesystem::path(testing::TempDir()) / "scree_range.csv";
+  std::ofstream(file)
+      << "case,quantity,section,kind,value,std,unit,relation,source,dumps,rounding\n"
+         "A,chi,S1,pfc3d,-0.5,0.2,-,max,line 2,,0.05\nA,chi,S1,pfc3d,-1,0.1,-,min,line 1,,0.5\n";
+  const auto rows = read_reference(file);
+  std::filesystem::remove(file);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].value, -1);
+  EXPECT_EQ(rows[0].std, 0.1);
+  EXPECT_EQ(rows[0].rounding, 0.5);
+  EXPECT_EQ(rows[0].upper, -0.5);
+  EXPECT_EQ(rows[0].upper_std, 0.2);
+  EXPECT_EQ(rows[0].upper_rounding, 0.05);
+  EXPECT_EQ(rows[0].source, "line 1; line 2");
 }
 
 TEST(Reference, EachValueStandsOnce) {
@@ -239,6 +259,20 @@ TEST(Compare, ZOfDeviationsOfBothSides) {
   compared = compare_with_reference({outputs_of(seeds[0])}, {row}, {"case"});
   EXPECT_FALSE(compared[0].simulated_std.has_value());
   EXPECT_FALSE(compared[0].z.has_value());
+}
+
+TEST(Compare, ARangeIsPassedWithTheDeviationOfTheBoundThatIsPassed) {
+  const auto rows = stored();
+  const ReferenceValue range = *find(rows, "A1", "chi_scatter", "S1", "pfc3d");
+  // chi of S1 at -d and d: a scatter of d sqrt 2, which scatters by d.
+  const auto z_of = [&](double d) {
+    return compare_with_reference(outputs_of({seed_with_sections({6}, -d), seed_with_sections({6}, d)}),
+                                  {range}, {"A1"})[0]
+        .z.value();
+  };
+  EXPECT_NEAR(z_of(0.4), (0.4 * std::sqrt(2) - 0.48) / std::hypot(0.4, 0.169706), 1e-6);
+  EXPECT_NEAR(z_of(0.1), (0.1 * std::sqrt(2) - 0.22) / std::hypot(0.1, 0.0777817), 1e-6);
+  EXPECT_EQ(z_of(0.25), 0) << "0.35 lies between";
 }
 
 TEST(Compare, AnglesOfReposeAndSlope) {

@@ -144,9 +144,23 @@ TEST(ReposeAngle, GrainPerchedOnTheConeIsNotItsTop) {
   EXPECT_NEAR(measure_repose(heap).height, before.height, 1e-12);
 }
 
+TEST(ReposeAngle, NoRadiusWhereTheAxisLiesInAGap) {
+  std::vector<Grain> heap(3, sphere(0.1));
+  heap[0].position = Vec3(0, 1, 0.05);  // the median of x is the second's, that of y this one's
+  heap[1].position = Vec3(1, 3, 0.05);
+  heap[2].position = Vec3(2, 0, 0.05);
+  const ReposeAngle read = measure_repose(heap);
+  EXPECT_EQ(read.axis[0], 1);
+  EXPECT_EQ(read.axis[1], 1);
+  for (const double unknown : {read.radius, read.radii[0], read.radii[3], read.runaways, read.height,
+                               read.angle, read.height_over_radius, read.half_coverage})
+    EXPECT_TRUE(std::isnan(unknown)) << unknown;
+}
+
 TEST(ReposeAngle, NothingAndOneGrain) {
   EXPECT_TRUE(std::isnan(measure_repose({}).angle));
   EXPECT_TRUE(std::isnan(measure_repose({}).height_over_radius));
+  EXPECT_TRUE(std::isnan(measure_repose({}).runaways));
   Grain grain = sphere(0.1);
   grain.position = Vec3(1, 2, 0.05);
   const ReposeAngle read = measure_repose({grain});

@@ -170,6 +170,18 @@ TEST_F(Cli, AHeapWithoutAnAngleSaysWhy) {
   EXPECT_NE(slurp(out / "report.html").find("No repose angle: not at rest."), std::string::npos);
 }
 
+TEST_F(Cli, ARunWhosePicturesGnuplotRefusesHasAReportAndFails) {
+  std::ofstream(folder / "gnuplot") << "#!/bin/sh\necho 'no range' >&2\nexit 1\n";
+  fs::permissions(folder / "gnuplot", fs::perms::owner_all);
+  const fs::path out = folder / "run";
+  const Called run = called(
+      "PATH=" + folder.string() +
+      ":$PATH " SCREE_BINARY " run " SCREE_SOURCE_DIR "/scenarios/drop_test.yaml --out " + out.string());
+  EXPECT_EQ(run.code, 1) << run.text;
+  EXPECT_NE(run.text.find("the report lacks a picture: gnuplot failed on"), std::string::npos) << run.text;
+  EXPECT_NE(slurp(out / "report.html").find("A picture is missing: gnuplot failed on"), std::string::npos);
+}
+
 // Balls of 1 m on a bench of 0.5 m carry nearly all of the load above its crest.
 TEST_F(Cli, BallsTooLargeForTheBenchAreTold) {
   const fs::path out = folder / "run";
