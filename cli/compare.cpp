@@ -32,6 +32,9 @@ int run_compare(const std::filesystem::path& dir, const std::vector<std::string>
                file.string());
     return kBadInput;
   }
+  if (run.interrupted)
+    fmt::print(stderr,
+               "note: this run was ended before its pile was finished; `scree run --resume` goes on\n");
   fmt::print("{} ({} seed{})\n", run.title, run.seeds.size(), run.seeds.size() == 1 ? "" : "s");
   const auto comparison = scree::compare_with_reference(run.outputs, reference, chosen);
   if (comparison.empty()) fmt::print("none of the values of these cases is in this run\n");

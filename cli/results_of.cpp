@@ -198,7 +198,8 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
   result.wall_seconds = wall_seconds;
   if (const BenchSpec* bench = bench_of(scenario)) result.bench_height = bench->height;
   result.effects = effects_in_words(scenario);
-  result.comparison = compare_with_reference(outputs_of(result.seeds), reference, scenario.compare);
+  if (!unfinished(result))
+    result.comparison = compare_with_reference(outputs_of(result.seeds), reference, scenario.compare);
 
   for (std::string& note : comparison_notes(result.comparison)) result.notes.push_back(std::move(note));
 

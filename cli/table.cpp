@@ -35,12 +35,13 @@ std::string printed(const ReferenceValue& reference) {
 
 void print_comparison(const std::vector<Comparison>& comparison) {
   if (comparison.empty()) return;
-  fmt::print("\n{:<16} {:<19} {:<8} {:<9} {:>17} {:>17} {:>7}\n", "case", "value", "section", "kind",
-             "printed", "simulated", "z");
+  fmt::print("\n{:<16} {:<19} {:<8} {:<9} {:>17} {:>17} {:>7}  {}\n", "case", "value", "section", "kind",
+             "printed", "simulated", "z", "verdict");
   for (const Comparison& c : comparison)
-    fmt::print("{:<16} {:<19} {:<8} {:<9} {:>17} {:>17} {:>7}\n", c.reference.case_name, c.reference.quantity,
-               c.reference.section, c.reference.kind, printed(c.reference),
-               with_std(c.simulated, c.simulated_std), c.z ? fmt::format("{:+.1f}", *c.z) : "-");
+    fmt::print("{:<16} {:<19} {:<8} {:<9} {:>17} {:>17} {:>7}  {}\n", c.reference.case_name,
+               c.reference.quantity, c.reference.section, c.reference.kind, printed(c.reference),
+               with_std(c.simulated, c.simulated_std), c.z ? fmt::format("{:+.1f}", *c.z) : "-",
+               in_words(verdict(c)));
 }
 
 void print_result(const RunResult& result) {

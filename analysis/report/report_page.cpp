@@ -54,23 +54,18 @@ dt { font-weight: 600; } dd { margin: 0; }
   tr { break-inside: avoid; } .wide { overflow: visible; } * { print-color-adjust: exact; } }
 )";
 
-struct VerdictLook {
-  const char* style;
-  const char* words;
-};
-
-VerdictLook look(Verdict verdict) {
+const char* style_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::close:
-      return {"close", "agrees closely"};
+      return "close";
     case Verdict::agrees:
-      return {"agrees", "agrees"};
+      return "agrees";
     case Verdict::differs:
-      return {"differs", "does not agree"};
+      return "differs";
     case Verdict::unknown:
       break;
   }
-  return {"unknown", "not judged"};
+  return "unknown";
 }
 
 std::string with_unit(const std::string& number, const std::string& unit) {
@@ -136,7 +131,7 @@ std::string comparison_table(const std::vector<Comparison>& comparison) {
       "<th class=\"word\">Verdict</th><th class=\"word\">Source</th></tr></thead><tbody>\n";
   for (const Comparison& row : comparison) {
     const ReferenceValue& reference = row.reference;
-    const VerdictLook shown = look(verdict(row));
+    const Verdict shown = verdict(row);
     out += fmt::format(
         "<tr><td class=\"word\">{}</td><td class=\"word\">{}</td><td "
         "class=\"word\">{}<small>{}</small></td><td>{}{}</td>"
@@ -149,7 +144,8 @@ std::string comparison_table(const std::vector<Comparison>& comparison) {
                                                    reference.unit)
                              : std::string()),
         value_cell(reference.quantity, row.simulated, row.simulated_std, reference.unit),
-        row.z ? decimals_text(*row.z, 1) : "–", shown.style, shown.words, html_escaped(reference.source));
+        row.z ? decimals_text(*row.z, 1) : "–", style_of(shown), in_words(shown),
+        html_escaped(reference.source));
   }
   return out + "</tbody></table></div>\n";
 }

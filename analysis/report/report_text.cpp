@@ -83,6 +83,7 @@ std::string angle_sentences(const RunResult& result) {
 }
 
 std::string comparison_sentence(const RunResult& result) {
+  if (unfinished(result)) return "Its pile is not finished and is not compared with printed values.";
   if (result.comparison.empty()) return "This run was not compared with printed values.";
   std::map<Verdict, int> count;
   for (const Comparison& row : result.comparison) ++count[verdict(row)];
@@ -216,11 +217,26 @@ Verdict verdict(const Comparison& comparison) {
   return distance < 1 ? Verdict::close : distance < 2 ? Verdict::agrees : Verdict::differs;
 }
 
+std::string in_words(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::close:
+      return "agrees closely";
+    case Verdict::agrees:
+      return "agrees";
+    case Verdict::differs:
+      return "does not agree";
+    case Verdict::unknown:
+      break;
+  }
+  return "not judged";
+}
+
 std::string lead_paragraphs(const RunResult& result) {
   const std::string answer = segregation_sentence(result);
   const double outside = share_in_no_section(result);
   std::string out = fmt::format(
-      "<p class=\"lead\">{}{} {}</p>\n",
+      "<p class=\"lead\">{}{}{} {}</p>\n",
+      unfinished(result) ? "<strong>This run was ended before it was finished.</strong> " : "",
       outside > kMuchInNoSection
           ? fmt::format("<strong>{} % of the rock lies above the crest's height and belongs to no "
                         "section.</strong> ",

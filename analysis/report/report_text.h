@@ -39,6 +39,7 @@ std::string quantity_in_words(const std::string& quantity);
 enum class Verdict { close, agrees, differs, unknown };
 /// |z| below 1, below 2, above; unknown without a deviation.
 Verdict verdict(const Comparison& comparison);
+std::string in_words(Verdict verdict);
 
 /// The answer of the run in plain words, as HTML paragraphs.
 std::string lead_paragraphs(const RunResult& result);

@@ -19,6 +19,7 @@ StoredRun parse_summary(const std::string& text) {
   try {
     const auto json = nlohmann::json::parse(text);
     run.title = json.at("title").get<std::string>();
+    run.interrupted = json.value("interrupted", false);
     for (const auto& seed : json.at("per_seed")) {
       if (!seed.at("seed").is_number_unsigned())
         throw std::runtime_error("not a summary of scree: a seed is no integer of 0 or more");

@@ -229,12 +229,11 @@ std::vector<double> over_seeds(const RunResult& result, std::size_t table, std::
 void write_summary(const RunResult& result, const std::filesystem::path& file) {
   const std::vector<SeedResult>& seeds = result.seeds;
   double overlap = 0;
-  bool at_rest = !seeds.empty(), interrupted = false;
+  bool at_rest = !seeds.empty();
   Json numbers = Json::array(), facts = Json::array(), rows = Json::array(), further = Json::array();
   for (const SeedResult& seed : seeds) {
     overlap = std::max(overlap, seed.largest_overlap_ratio);
     at_rest = at_rest && seed.at_rest;
-    interrupted = interrupted || seed.interrupted;
     numbers.push_back(seed.seed);
     facts.push_back(seed_facts(seed));
   }
@@ -261,7 +260,7 @@ void write_summary(const RunResult& result, const std::filesystem::path& file) {
               {"lost_mass_t", number(total(seeds, &SeedResult::lost_mass) / 1000)},
               {"energy_error_over_put_in", number(largest_energy_error(result))},
               {"at_rest", at_rest},
-              {"interrupted", interrupted},
+              {"interrupted", unfinished(result)},
               {"per_seed", facts},
               {"sections", section_list(result, 0)},
               {"further_sections", further}};
@@ -320,6 +319,11 @@ std::string energy_in_words(double relative_error, bool closed) {
   return std::isfinite(relative_error)
              ? fmt::format("{} {:.2f} %", closed ? "closed to" : "open by", 100 * std::abs(relative_error))
              : "not a number";
+}
+
+bool unfinished(const RunResult& result) {
+  return std::any_of(result.seeds.begin(), result.seeds.end(),
+                     [](const SeedResult& seed) { return seed.interrupted; });
 }
 
 double share_in_no_section(const RunResult& result) {

@@ -24,6 +24,9 @@ std::string energy_in_words(double relative_error, bool closed);
 /// Share of the rock in the first table of sections that lies above the crest's height and so in none of
 /// them, over all seeds; 0 without a bench.
 double share_in_no_section(const RunResult& result);
+
+/// A seed was ended by the user before its pile was finished: nothing is held against printed values then.
+bool unfinished(const RunResult& result);
 inline constexpr double kMuchInNoSection = 0.1;  ///< above it sections do not stand for the pile
 
 /// Why the heap of a repose test has no repose angle: "not at rest", "no radius: ..." or "no flank: ...";
@@ -37,6 +40,7 @@ struct StoredRun {
   std::vector<Outputs> outputs;      ///< of each seed
   std::vector<double> wall_seconds;  ///< of each seed, 0 where it is not said
   std::vector<std::string> cases;    ///< reference cases it was compared with
+  bool interrupted = false;          ///< before a pile was finished
 };
 
 /// Reads the text of a summary.json, or the file. Throws std::runtime_error `what is wrong`, the second with

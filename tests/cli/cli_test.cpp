@@ -246,6 +246,7 @@ TEST_F(Cli, InterruptKeepsWhatIsDone) {
   const auto summary = nlohmann::json::parse(slurp(out / "summary.json"));
   EXPECT_TRUE(summary["interrupted"].get<bool>());
   EXPECT_FALSE(summary["at_rest"].get<bool>()) << "an interrupted run does not look finished";
+  EXPECT_TRUE(summary["comparison"].empty());
   EXPECT_NE(slurp(out / "report.html").find("ended by the user"), std::string::npos);
 }
 
