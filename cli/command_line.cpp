@@ -66,8 +66,9 @@ Command run_command(CLI::App& all) {
   for (const char* other : {"file", "--seeds", "--out", "--set", "--force", "--keep-pile", "--pile"})
     resume->excludes(app->get_option(other));
   app->footer(
-      "\nExit codes: 0 done; 1 failed (disk full, no memory); 2 bad input; 3 the run broke the watch on "
-      "energy, numbers and lost rock, or blew up, and does not count; 130 interrupted\n"
+      "\nExit codes: 0 done; 1 failed (disk full, no memory, a picture refused by gnuplot); 2 bad input; "
+      "3 the run broke the watch on energy, numbers and lost rock, or blew up, and does not count; "
+      "130 interrupted\n"
       "\nExamples:\n  scree run scenarios/quick_dump.yaml\n"
       "  scree run scenarios/a1_10m.yaml --seeds 5 --out runs/a1_five --set experiment.dumps=2\n"
       "  scree run --resume runs/a1_five\n"
