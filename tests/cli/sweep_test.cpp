@@ -1,6 +1,7 @@
 // Sweeps, calibrations and predictions as a user meets them: killed at any moment, two at once, wrong files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "scree_version.h"
+#include "sim/io/results_store.h"
 #include "tests/cli/background.h"
 #include "tests/cli/call.h"
 
@@ -210,6 +212,49 @@ TEST_F(SweepCli, PredictsAndCalibratesFromTheStore) {
         "extends: found/material.yaml\ntitle: Mine\ngrading: Lab0\nexperiment: {type: repose_lift}\n");
   EXPECT_EQ(call("validate " + in_folder("mine.yaml")).code, 0)
       << call("validate " + in_folder("mine.yaml")).text;
+}
+
+// A rock that falls: hundredths of a second.
+TEST_F(SweepCli, ARunThatAnotherProgramTriesAgainHasNotFailed) {
+  write("calibration.yaml", "scenario: " + std::string(SCREE_SOURCE_DIR) +
+                                "/scenarios/drop_test.yaml\nseeds: [1]\n"
+                                "parameters: {material.local_damping: {from: 0.4, to: 0.7}}\n"
+                                "targets: [{output: rebound_height_m, value: 0.1, uncertainty: 0.02}]\n"
+                                "method: {type: bayes, first: 5, most: 5}\n");
+  const std::string store = in_folder("store.sqlite");
+  const auto calibrate = [&](const std::string& out) {
+    return std::vector<std::string>{"calibrate",   in_folder("calibration.yaml"), "--store", store, "--out",
+                                    in_folder(out)};
+  };
+  ASSERT_EQ(start(calibrate("whole")).code(), 0) << slurp(folder / "log");
+  sqlite3* db = nullptr;
+  ASSERT_EQ(sqlite3_open(store.c_str(), &db), SQLITE_OK);
+  std::vector<std::string> keys;
+  const auto ask = [&](const char* sql) {
+    const auto keep = [](void* all, int, char** row, char**) {
+      static_cast<std::vector<std::string>*>(all)->emplace_back(row[0]);
+      return 0;
+    };
+    ASSERT_EQ(sqlite3_exec(db, sql, keep, &keys, nullptr), SQLITE_OK) << sqlite3_errmsg(db);
+  };
+  ask("SELECT key FROM runs LIMIT 2");
+  ask("UPDATE runs SET state = 'failed', message = 'made up' WHERE key IN (SELECT key FROM runs LIMIT 2)");
+  sqlite3_close(db);
+  ASSERT_EQ(keys.size(), 2u);
+
+  scree::ResultsStore other(store);
+  const auto finish = [&](const std::string& key) {
+    return other.finish(key, "", other.find(key)->outputs, 1);
+  };
+  ASSERT_EQ(other.claim({keys[0], "", 1}, "1", true), scree::Claim::ours);
+  Background again = start(calibrate("again"));
+  again.ended_within(1);  // it knows by now that the second has failed, and waits for the first
+  ASSERT_EQ(other.claim({keys[1], "", 1}, "1", true), scree::Claim::ours);
+  EXPECT_TRUE(finish(keys[0]));
+  EXPECT_FALSE(again.ended_within(4)) << slurp(folder / "log");
+  EXPECT_TRUE(finish(keys[1]));
+  EXPECT_EQ(again.code(), 0);
+  EXPECT_THAT(slurp(folder / "log"), testing::Not(HasSubstr("left out")));
 }
 
 TEST_F(SweepCli, OutputsOfSectionsThatAreNotCutAreRefusedBeforeSimulations) {
