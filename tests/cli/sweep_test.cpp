@@ -1,4 +1,5 @@
 // Sweeps, calibrations and predictions as a user meets them: killed at any moment, two at once, wrong files.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
@@ -212,6 +213,38 @@ TEST_F(SweepCli, PredictsAndCalibratesFromTheStore) {
         "extends: found/material.yaml\ntitle: Mine\ngrading: Lab0\nexperiment: {type: repose_lift}\n");
   EXPECT_EQ(call("validate " + in_folder("mine.yaml")).code, 0)
       << call("validate " + in_folder("mine.yaml")).text;
+}
+
+// Points along a diagonal say nothing of the corners beside it; those of a grid say all of its corners.
+TEST_F(SweepCli, PredictsOnlyAmongThePointsOfADesign) {
+  const std::string drop = "scenario: " + std::string(SCREE_SOURCE_DIR) +
+                           "/scenarios/drop_test.yaml\nseeds: [1]\n",
+                    damping = "material.local_damping", height = "experiment.height_m",
+                    store = " --store " + in_folder("store.sqlite");
+  std::string points;
+  for (int k = 0; k <= 4; ++k)
+    points += fmt::format("{}{{{}: {:g}, {}: {:g}}}", k == 0 ? "" : ", ", damping, 0.3 + 0.05 * k, height,
+                          1 + 0.25 * k);
+  write("list.yaml", drop + "design: {type: list, points: [" + points + "]}\n");
+  write("grid.yaml", drop + "design: {type: grid, parameters: {" + damping + ": [0.3, 0.4, 0.5], " + height +
+                         ": [1, 1.5, 2]}}\n");
+  const auto predict = [&](const std::string& file, const std::string& at, const std::string& h) {
+    return call("predict " + in_folder(file) + store + " --output rebound_height_m " + damping + "=" + at +
+                " " + height + "=" + h);
+  };
+  ASSERT_EQ(call("sweep " + in_folder("list.yaml") + store).code, 0);
+  const Called corner = predict("list.yaml", "0.3", "2");
+  EXPECT_EQ(corner.code, 2);
+  EXPECT_THAT(
+      corner.text,
+      HasSubstr("material.local_damping=0.3 experiment.height_m=2: lies outside of what was simulated"));
+  EXPECT_THAT(corner.text, HasSubstr("material.local_damping=0.4 experiment.height_m=1.5"));
+  EXPECT_EQ(predict("list.yaml", "0.4", "1.5").code, 0);
+  EXPECT_EQ(predict("list.yaml", "0.35", "1.25").code, 0);
+  ASSERT_EQ(call("sweep " + in_folder("grid.yaml") + store).code, 0);
+  const Called there = predict("grid.yaml", "0.3", "2");
+  EXPECT_EQ(there.code, 0) << there.text;
+  EXPECT_THAT(there.text, HasSubstr("rebound_height_m = 0.5"));  // 2 m ((1 - 0.3) / (1 + 0.3))^2 = 0.58 m
 }
 
 // A rock that falls: hundredths of a second.
