@@ -303,6 +303,16 @@ TEST_F(SweepCli, OutputsOfSectionsThatAreNotCutAreRefusedBeforeSimulations) {
   EXPECT_FALSE(fs::exists(in_folder("store.sqlite")));
 }
 
+TEST_F(SweepCli, TheTableIsWrittenBesideWhatFailed) {
+  const Called called =
+      call("sweep " SCREE_SOURCE_DIR "/scenarios/sweeps/repose_lab.yaml --from " SCREE_SOURCE_DIR
+           "/assets/sweeps/repose_lab.csv --failed --export " +
+           in_folder("all.csv"));
+  EXPECT_EQ(called.code, 0);
+  EXPECT_THAT(called.text, HasSubstr("no run has failed\ntable: "));
+  EXPECT_TRUE(fs::exists(folder / "all.csv"));
+}
+
 // Where a caller ignores its children the system keeps to itself how they ended.
 TEST_F(SweepCli, EndsWhereTheCallerIgnoresItsChildren) {
   const Called result = called("timeout 100 bash -c \"trap '' CHLD; exec " SCREE_BINARY " sweep " +
