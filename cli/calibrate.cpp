@@ -310,6 +310,15 @@ int run_equivalence(const CalibrateOptions& options) {
                        spec.output, spec.scenario.filename().string(), spec.within, spec.seeds.size()),
            fmt::format("Made by scree {} ({}): scree calibrate {}.", SCREE_VERSION, SCREE_REVISION,
                        options.file.filename().string())}));
+  const auto found = std::count_if(nodes.begin(), nodes.end(), [](const auto& node) { return node.found; });
+  const std::string left_out =
+      fmt::format("{} of {} nodes are left out: no setting of Bullet gives their {} within {:g} degrees",
+                  std::ssize(nodes) - found, nodes.size(), spec.output, spec.within);
+  if (found == 0) {
+    fmt::print(stderr, "{}; table: {}\n", left_out, table.string());
+    return kFailed;
+  }
+  if (found < std::ssize(nodes)) fmt::print("\n{}", left_out);
   fmt::print("\ntable: {}; copy it to assets/impulse/equivalent.csv, where engine impulse looks for it\n",
              table.string());
   return kOk;

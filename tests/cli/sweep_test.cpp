@@ -247,6 +247,32 @@ TEST_F(SweepCli, PredictsOnlyAmongThePointsOfADesign) {
   EXPECT_THAT(there.text, HasSubstr("rebound_height_m = 0.5"));  // 2 m ((1 - 0.3) / (1 + 0.3))^2 = 0.58 m
 }
 
+// A rock that falls rebounds alike whatever its friction; a node is found if the friction that is searched
+// lies on its ray, at most 5 times its own.
+TEST_F(SweepCli, NodesWithoutAnEquivalentAreCounted) {
+  const auto fit = [&](const std::string& mu) {
+    write("engines.yaml",
+          "scenario: " + std::string(SCREE_SOURCE_DIR) +
+              "/scenarios/drop_test.yaml\nseeds: [1]\nequivalent:\n  output: rebound_height_m\n"
+              "  nodes: {material.mu: [" +
+              mu + "], material.mu_r: [" + mu +
+              "], material.local_damping: [0.4]}\n"
+              "  search: {numerics.impulse_friction: {from: 0.6, to: 0.9}, "
+              "numerics.impulse_rolling: {from: 0.6, to: 0.9}}\n"
+              "  points: 4\n  rounds: 1\n  within: 100\n");
+    return call("calibrate " + in_folder("engines.yaml") + " --store " + in_folder("store.sqlite") +
+                " --force --out " + in_folder("fit"));
+  };
+  const Called some = fit("0.1, 0.4");
+  EXPECT_EQ(some.code, 0) << some.text;
+  EXPECT_THAT(some.text, HasSubstr("3 of 4 nodes are left out"));
+  EXPECT_THAT(some.text, HasSubstr("copy it to assets/impulse"));
+  const Called none = fit("0.05, 0.1");
+  EXPECT_EQ(none.code, 1) << none.text;
+  EXPECT_THAT(none.text, HasSubstr("4 of 4 nodes are left out"));
+  EXPECT_THAT(none.text, testing::Not(HasSubstr("copy it to assets/impulse")));
+}
+
 // A rock that falls: hundredths of a second.
 TEST_F(SweepCli, ARunThatAnotherProgramTriesAgainHasNotFailed) {
   write("calibration.yaml", "scenario: " + std::string(SCREE_SOURCE_DIR) +
