@@ -29,8 +29,8 @@ constexpr double kUndetermined =
     0.8;                       // share of a range that an interval of 90 % takes when nothing is known
 constexpr double kMissed = 2;  // standard deviations beyond which a target is not met
 
-// Scenarios with their seeds through the store; what is found of each.
-std::vector<std::optional<scree::StoredResult>> simulate(
+// Scenarios with their seeds through the store; what came of each.
+std::vector<scree::StoredResult> simulate(
     const std::vector<std::pair<scree::ScenarioResult, std::uint64_t>>& runs, scree::ResultsStore& store,
     const CalibrateOptions& options) {
   std::vector<scree::RunRequest> requests;
@@ -38,22 +38,19 @@ std::vector<std::optional<scree::StoredResult>> simulate(
     if (!loaded.errors.empty()) throw std::invalid_argument(loaded.errors.front().text());
     requests.push_back(scree::run_request(loaded.scenario, seed, scree::results_version(), asset_dir()));
   }
-  run_with_progress(requests, store, options.ensemble);
-  if (interrupted) throw scree::CalibrationStopped("interrupted; the same command goes on from here");
-  std::vector<std::optional<scree::StoredResult>> results;
-  for (const scree::RunRequest& request : requests) results.push_back(store.find(request.key));
-  return results;
+  auto ended = ended_runs(requests, store, options.ensemble);
+  if (!ended) throw scree::CalibrationStopped("interrupted; the same command goes on from here");
+  return std::move(*ended);
 }
 
-bool is_good(const std::optional<scree::StoredResult>& result) {
-  return result && result->state == scree::RunState::done && result->at_rest();
+bool is_good(const scree::StoredResult& result) {
+  return result.state == scree::RunState::done && result.at_rest();
 }
 
-std::string why_left_out(const std::optional<scree::StoredResult>& result) {
-  return !result                                  ? "it was not done"
-         : result->state != scree::RunState::done ? result->message
-         : !result->at_rest()                     ? "its pile did not come to rest"
-                                                  : "its pile does not give the number asked for";
+std::string why_left_out(const scree::StoredResult& result) {
+  return result.state != scree::RunState::done ? result.message
+         : !result.at_rest()                   ? "its pile did not come to rest"
+                                               : "its pile does not give the number asked for";
 }
 
 // Does what simulates; the exit code if the user ended it or a scenario was refused.
@@ -86,8 +83,8 @@ scree::Simulator simulator(const scree::CalibrationSpec& spec, scree::ResultsSto
       values.emplace_back();
       for (const auto& target : spec.targets) {
         const bool given = is_good(found[k]) && target.scenario == runs[k].scenario &&
-                           found[k]->outputs.contains(target.output);
-        values.back().push_back(given ? found[k]->outputs.at(target.output) : NAN);
+                           found[k].outputs.contains(target.output);
+        values.back().push_back(given ? found[k].outputs.at(target.output) : NAN);
       }
       if (!is_good(found[k]))
         fmt::print(stderr, "a run with {} is left out: {}\n",
@@ -281,8 +278,8 @@ int run_equivalence(const CalibrateOptions& options) {
       const auto found = simulate(scenarios, *store, options);
       std::vector<double> values;
       for (std::size_t k = 0; k < runs.size(); ++k) {
-        const bool given = is_good(found[k]) && found[k]->outputs.contains(spec.output);
-        values.push_back(given ? found[k]->outputs.at(spec.output) : NAN);
+        const bool given = is_good(found[k]) && found[k].outputs.contains(spec.output);
+        values.push_back(given ? found[k].outputs.at(spec.output) : NAN);
         if (!given)
           fmt::print(stderr, "a run with {} is left out: {}\n", fmt::join(runs[k].overrides, ", "),
                      why_left_out(found[k]));
@@ -313,6 +310,15 @@ int run_equivalence(const CalibrateOptions& options) {
                        spec.output, spec.scenario.filename().string(), spec.within, spec.seeds.size()),
            fmt::format("Made by scree {} ({}): scree calibrate {}.", SCREE_VERSION, SCREE_REVISION,
                        options.file.filename().string())}));
+  const auto found = std::count_if(nodes.begin(), nodes.end(), [](const auto& node) { return node.found; });
+  const std::string left_out =
+      fmt::format("{} of {} nodes are left out: no setting of Bullet gives their {} within {:g} degrees",
+                  std::ssize(nodes) - found, nodes.size(), spec.output, spec.within);
+  if (found == 0) {
+    fmt::print(stderr, "{}; table: {}\n", left_out, table.string());
+    return kFailed;
+  }
+  if (found < std::ssize(nodes)) fmt::print("\n{}", left_out);
   fmt::print("\ntable: {}; copy it to assets/impulse/equivalent.csv, where engine impulse looks for it\n",
              table.string());
   return kOk;

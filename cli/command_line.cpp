@@ -31,6 +31,12 @@ void add_ensemble_options(CLI::App* app, EnsembleOptions& ensemble) {
       ->check(within(0, 1e6));
 }
 
+// Of an option with which nothing is run: how runs are done would mean nothing.
+void runs_nothing(CLI::App* app, CLI::Option* option) {
+  for (const char* other : {"--again", "--jobs", "--checkpoint-minutes"})
+    option->excludes(app->get_option(other));
+}
+
 Command run_command(CLI::App& all) {
   const auto options = std::make_shared<RunOptions>();
   RunOptions& run = *options;
@@ -90,16 +96,19 @@ Command sweep_command(CLI::App& all) {
   CLI::App* app = all.add_subcommand("sweep", "Run a scenario over many values of its parameters");
   app->add_option("file", sweep.file, "Sweep file (YAML)")->required();
   add_ensemble_options(app, sweep.ensemble);
-  app->add_flag("--list", sweep.list, "Show the points and what is known of them; run nothing");
-  app->add_flag("--failed", sweep.failed, "Show the runs that failed and why; run nothing");
-  app->add_option("--from", sweep.from, "Show the runs of this exported table instead; run nothing, no store")
-      ->excludes("--store")
-      ->excludes("--again")
-      ->excludes("--jobs");
+  runs_nothing(app,
+               app->add_flag("--list", sweep.list, "Show the points and what is known of them; run nothing"));
+  CLI::Option* const failed = app->add_flag(
+      "--failed", sweep.failed, "Show the runs that failed and why instead of the points; run nothing");
+  runs_nothing(app, failed);
+  runs_nothing(app, app->add_option("--from", sweep.from,
+                                    "Show the runs of this exported table instead; run nothing, no store")
+                        ->excludes("--store"));
   app->add_option("--export", sweep.csv, "Write every run and its numbers to a CSV file");
   app->add_option("--plot", sweep.plot, "Draw the output over one or two parameters (.svg)");
   app->add_option("--output", sweep.output,
                   "Number that is shown and drawn, for example angle_deg or chi_S6");
+  for (const char* other : {"--list", "--plot", "--output"}) failed->excludes(app->get_option(other));
   app->footer(
       "\nExamples:\n  scree sweep scenarios/sweeps/repose_lab.yaml\n"
       "  scree sweep scenarios/sweeps/repose_lab.yaml --list --export angles.csv --plot angles.svg\n"
@@ -148,14 +157,12 @@ Command reproduce_command(CLI::App& all) {
   app->add_option("--seeds", reproduce.seeds, "Seeds of each case, at most")->check(CLI::Range(1, 1000));
   add_ensemble_options(app, reproduce.ensemble);
   app->add_option("--out", reproduce.out, "Folder for the report; default: a free runs/reproduction");
-  app->add_flag("--list", reproduce.list, "Report what the store has; run nothing");
+  runs_nothing(app, app->add_flag("--list", reproduce.list, "Report what the store has; run nothing"));
   add_force_flag(app, reproduce.force);
-  app->add_option("--from", reproduce.from,
-                  "Take the runs from this exported table, not from a store; run nothing")
-      ->excludes("--store")
-      ->excludes("--again")
-      ->excludes("--list")
-      ->excludes("--jobs");
+  runs_nothing(app, app->add_option("--from", reproduce.from,
+                                    "Take the runs from this exported table, not from a store; run nothing")
+                        ->excludes("--store")
+                        ->excludes("--list"));
   app->add_option("--export", reproduce.csv, "Write every run to this CSV file");
   app->footer(
       "\nExamples:\n  scree reproduce a1 d2 --seeds 2\n"
@@ -172,7 +179,7 @@ Command study_command(CLI::App& all) {
   app->add_option("--rank-by", study.rank_by, "Criterion; default: that of the file");
   add_ensemble_options(app, study.ensemble);
   app->add_option("--out", study.out, "Folder for the report; default: a free runs/NAME");
-  app->add_flag("--list", study.list, "Report what the store has; run nothing");
+  runs_nothing(app, app->add_flag("--list", study.list, "Report what the store has; run nothing"));
   add_force_flag(app, study.force);
   app->footer("\nExample:\n  scree study scenarios/studies/disposal_qb.yaml\n");
   return {app, [options] { return run_study(*options); }};

@@ -75,6 +75,22 @@ scree::EnsembleProgress run_with_progress(const std::vector<scree::RunRequest>& 
   return progress;
 }
 
+std::optional<std::vector<scree::StoredResult>> ended_runs(const std::vector<scree::RunRequest>& runs,
+                                                           scree::ResultsStore& store,
+                                                           EnsembleOptions options) {
+  while (true) {
+    run_with_progress(runs, store, options);
+    if (interrupted) return std::nullopt;
+    std::vector<scree::StoredResult> results;
+    for (const scree::RunRequest& run : runs)
+      if (auto found = store.find(run.key); found && found->state != scree::RunState::running)
+        results.push_back(std::move(*found));
+    if (results.size() == runs.size()) return results;
+    // Another program tries one again that had failed, which is no failure yet: it is waited for.
+    options.again = false;
+  }
+}
+
 std::optional<double> number_of(const std::string& text) {
   double value = 0;
   return scree::parse_number(text, value) == scree::Parsed::yes ? std::optional(value) : std::nullopt;

@@ -20,5 +20,10 @@ std::unique_ptr<scree::ResultsStore> open_store(const std::filesystem::path& nam
 scree::EnsembleProgress run_with_progress(const std::vector<scree::RunRequest>& runs,
                                           scree::ResultsStore& store, const EnsembleOptions& options);
 
+/// The same, and what came of each: done or failed. Nothing if Ctrl-C ended it.
+std::optional<std::vector<scree::StoredResult>> ended_runs(const std::vector<scree::RunRequest>& runs,
+                                                           scree::ResultsStore& store,
+                                                           EnsembleOptions options);
+
 /// A decimal number and nothing else.
 std::optional<double> number_of(const std::string& text);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "analysis/statistics/convex_hull.h"
 #include "analysis/statistics/emulator.h"
 #include "cli/commands.h"
 #include "cli/ensemble/output_scope.h"
@@ -17,7 +18,10 @@ namespace {
 struct Axis {
   double low = INFINITY, high = -INFINITY;
   double share(double value) const { return high > low ? (value - low) / (high - low) : 0.0; }
+  double value(double share) const { return low + share * (high - low); }
 };
+
+constexpr double kOutside = 1e-4;  // of the ranges: beyond what rounding does to a point on the edge
 
 int refuse(const std::string& message) {
   fmt::print(stderr, "{}\n", message);
@@ -111,6 +115,16 @@ int run_predict(const PredictOptions& options) {
   for (std::size_t r = 0; r < values.size(); ++r)
     for (std::size_t k = 0; k < axes.size(); ++k)
       x(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(k)) = axes[k].share(at[r][k]);
+  // Within the ranges of all parameters there may be no runs around it: beside points along a diagonal, say.
+  const Eigen::VectorXd inside = scree::nearest_in_hull(x, point);
+  if ((inside - point).norm() > kOutside) {
+    std::vector<std::string> nearest;
+    for (std::size_t k = 0; k < axes.size(); ++k)
+      nearest.push_back(
+          fmt::format("{}={:.6g}", sweep.parameters[k], axes[k].value(inside[static_cast<Eigen::Index>(k)])));
+    return refuse(fmt::format("{}: lies outside of what was simulated; the nearest that can be predicted: {}",
+                              fmt::join(options.values, " "), fmt::join(nearest, " ")));
+  }
   const scree::Emulator emulator(
       x, Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
   const scree::Prediction p = emulator.at(point);

@@ -73,18 +73,17 @@ void print_points(const scree::Sweep& sweep, const std::vector<PointResults>& po
   }
 }
 
-int print_failed(const scree::Sweep& sweep, const std::vector<PointResults>& points) {
-  int count = 0;
+void print_failed(const scree::Sweep& sweep, const std::vector<PointResults>& points) {
+  bool none = true;
   for (const PointResults& p : points)
     for (std::size_t k = 0; k < p.runs.size(); ++k) {
       if (!p.runs[k] || p.runs[k]->state != scree::RunState::failed) continue;
-      ++count;
+      none = false;
       for (std::size_t q = 0; q < sweep.parameters.size(); ++q)
         fmt::print("{}={} ", sweep.parameters[q], p.point->values[q]);
       fmt::print("seed {}: {}\n", p.seeds[k], p.runs[k]->message);
     }
-  if (count == 0) fmt::print("no run has failed\n");
-  return count;
+  if (none) fmt::print("no run has failed\n");
 }
 
 // A line over one parameter, a map over two that form a grid. False if the sweep is neither.
@@ -165,17 +164,16 @@ bool can_be_written(const SweepOptions& options, const scree::Sweep& sweep) {
 
 // Tables and pictures of what is known.
 int show(const SweepOptions& options, const scree::Sweep& sweep, const std::vector<PointResults>& points) {
-  if (options.failed) {
-    print_failed(sweep, points);
-    return kOk;
-  }
   const std::vector<std::string> shown = options.output.empty() ? main_outputs(scree::output_names(points))
                                                                 : std::vector<std::string>{options.output};
   const auto reference = scree::read_reference(asset_dir() / "reference" / "results.csv");
   std::vector<scree::SweepComparison> comparisons;
   for (const std::string& output : shown)
     comparisons.push_back(scree::compare_sweep(points, output, reference));
-  print_points(sweep, points, shown, comparisons);
+  if (options.failed)
+    print_failed(sweep, points);
+  else
+    print_points(sweep, points, shown, comparisons);
   if (!options.csv.empty()) {
     scree::write_sweep_csv(sweep, points, options.csv);
     fmt::print("table: {}\n", options.csv.string());

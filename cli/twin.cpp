@@ -22,7 +22,9 @@ namespace {
 const std::map<std::string, double> kStrengths{{"weak", 2}, {"medium", 4}, {"strong", 8}};
 
 // Sets what is left to chance; false, with a message, if a word is none.
-bool draw(const TwinOptions& options, const scree::DiagnosisModel& model, scree::TwinSpec& spec) {
+bool draw(const TwinOptions& options, const scree::ModelSpace& space, scree::TwinSpec& spec) {
+  std::vector<std::string> effects;
+  for (const scree::CandidateEffect& effect : space.effects) effects.push_back(effect.name);
   scree::Random random(spec.seed, 1, scree::RandomPurpose::measurement);
   std::vector<std::string> asked = options.effects;
   if (asked.empty()) asked.push_back("random");
@@ -38,15 +40,21 @@ bool draw(const TwinOptions& options, const scree::DiagnosisModel& model, scree:
     if (name == "none") continue;
     if (name == "random") {
       if (options.engine == "impulse") continue;  // has no effects
-      // Of all effects and none.
-      const auto pick =
-          static_cast<std::size_t>(random.uniform() * static_cast<double>(model.effects.size() + 1));
-      if (pick < model.effects.size()) add(model.effects[pick]);
+      // Of all effects that act, and none.
+      const auto pick = static_cast<std::size_t>(random.uniform() * static_cast<double>(effects.size() + 1));
+      if (pick < effects.size()) add(effects[pick]);
       continue;
     }
-    if (std::find(model.effects.begin(), model.effects.end(), name) == model.effects.end()) {
+    const auto left_out = std::find_if(space.left_out.begin(), space.left_out.end(),
+                                       [&](const auto& l) { return l.effect == name; });
+    if (left_out != space.left_out.end()) {
+      fmt::print(stderr, "--effect {}: cannot be hidden in the model's experiments: {}\n", name,
+                 left_out->why);
+      return false;
+    }
+    if (std::find(effects.begin(), effects.end(), name) == effects.end()) {
       fmt::print(stderr, "--effect {}: none of the model's{}; there are none, random, {}\n", name,
-                 scree::suggestion(name, model.effects), scree::join(model.effects));
+                 scree::suggestion(name, effects), scree::join(effects));
       return false;
     }
     add(name);
@@ -85,7 +93,7 @@ int run_twin(const TwinOptions& options) {
                   ? *options.seed
                   : static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count() /
                                                1000 % 1000000000);
-  if (!draw(options, model, spec)) return kBadInput;
+  if (!draw(options, scree::twin_space(model, asset_dir()), spec)) return kBadInput;
   if (options.engine == "impulse" && !spec.effects.empty()) {
     fmt::print(stderr, "--engine impulse: has no effects; take --effect none\n");
     return kBadInput;

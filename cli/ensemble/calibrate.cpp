@@ -184,8 +184,9 @@ CalibrationAnswer answer_of(const CalibrationSpec& spec, const CalibrationResult
   const Posterior& posterior = *result.posterior;
   const auto dimensions = static_cast<int>(spec.parameters.size());
   const double level = spec.targets[0].value;
+  const bool one_target = spec.targets.size() == 1;  // else what gives the first alone is no answer
   const auto found = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
-  if (dimensions == 1 && !result.grid.empty()) {
+  if (dimensions == 1 && one_target && !result.grid.empty()) {
     std::vector<double> x;
     for (int k = 0; k < spec.grid_points; ++k)
       x.push_back(parameter_value(spec, 0, static_cast<double>(k) / (spec.grid_points - 1)));
@@ -194,7 +195,8 @@ CalibrationAnswer answer_of(const CalibrationSpec& spec, const CalibrationResult
   if (dimensions == 2) {
     answer.map = map_of(spec, result);
     answer.line = level_pairs(*answer.map, level);
-    if (are_mu_and_mu_r(spec.parameters)) answer.equal = found(level_where_equal(*answer.map, level));
+    if (one_target && are_mu_and_mu_r(spec.parameters))
+      answer.equal = found(level_where_equal(*answer.map, level));
     if (answer.equal) answer.equal_interval = interval_where_equal(spec, posterior);
   }
   // Of three parameters some are often not determined: their most likely value would be any.

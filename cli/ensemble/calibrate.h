@@ -45,17 +45,17 @@ struct CalibrationAnswer {
   std::vector<Prediction> at_value;             ///< of each target
   /// By how many standard deviations (target's and emulator's) each target is missed.
   std::vector<double> missed_by;
-  std::optional<double> interpolated;       ///< grid of one parameter: linear between its points
+  /// One target and a grid of one parameter: linear between its points.
+  std::optional<double> interpolated;
   std::optional<ParameterMap> map;          ///< two parameters: the first target's number over them
   std::vector<std::array<double, 2>> line;  ///< two parameters: pairs that give the first target
-  std::optional<double> equal;              ///< mu and mu_r: where both are equal
+  std::optional<double> equal;              ///< one target, mu and mu_r: where both are equal
   std::optional<std::array<double, 2>> equal_interval;  ///< 90 % of the probability on that line
 };
 
-/// One parameter: on a grid linear between its points, as the thesis did, else the mean of the posterior. mu
-/// and mu_r: where they are equal and give the target, as the thesis chose among all pairs that do, with the
-/// interval along that line; without such a pair, and for two other parameters, the most likely ones; for
-/// three the mean.
+/// One parameter: the mean of the posterior; two: the most likely pair; three: the mean. With a single target
+/// the thesis's ways go before these: on a grid of one parameter linear between its points; of mu and mu_r
+/// the pair that is equal and gives the target, with the interval along that line, if there is one.
 CalibrationAnswer answer_of(const CalibrationSpec& spec, const CalibrationResult& result);
 
 /// Keys of the parameters.

@@ -256,7 +256,10 @@ class Ensemble {
     sort_piles(*request);
     const bool ours = failure.empty() ? store_.finish(ended.key, text, outputs, seconds)
                                       : store_.fail(ended.key, failure, seconds);
-    if (!ours) return;  // it was taken for dead, and another program does the run now
+    if (!ours) {  // it was taken for dead, and another program does the run now
+      left_to_others_.push_back(request);
+      return;
+    }
     if (!may_go_on) forget_folder(ended.key);
     ++progress_.ended_here;
     ended_work_ += 1 - ended.share_before;

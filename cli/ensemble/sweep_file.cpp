@@ -90,8 +90,10 @@ void read_list(const YamlNode& design, Sweep& sweep, FileReader& reader) {
 }
 
 void read_random(const YamlNode& design, bool is_sobol, Sweep& sweep, FileReader& reader) {
-  reader.allow(design, {"type", "parameters", "points", "seed"},
-               is_sobol ? " in sobol" : " in latin_hypercube");
+  if (is_sobol)  // whose sequence is always the same
+    reader.allow(design, {"type", "parameters", "points"}, " in sobol");
+  else
+    reader.allow(design, {"type", "parameters", "points", "seed"}, " in latin_hypercube");
   const YamlNode* parameters =
       reader.map_at(design, "parameters", true, "a map from keys to {from: .., to: ..}");
   const YamlEntry *points = design.find("points"), *seed_entry = design.find("seed");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -108,7 +109,7 @@ class TwinMaker {
         asset_dir_(asset_dir),
         hidden_(hidden),
         experiments_(experiments_of(model)),
-        space_(space_of(model, experiments_, {}, asset_dir_)),
+        space_(twin_space(model, asset_dir_)),
         base_model_(learn_base_model(design)),
         error_variances_(variances_of_errors()),
         covariance_(covariance_of_means()),
@@ -228,13 +229,7 @@ class TwinMaker {
   // where the effect is too weak that way, it is the other.
   std::pair<EffectAt, double> hide(const std::string& name, const Eigen::VectorXd& base) {
     const std::size_t e = space_.find(name);
-    if (e == space_.effects.size()) {
-      const auto& all = space_.left_out;
-      const auto left_out =
-          std::find_if(all.begin(), all.end(), [&](const LeftOut& l) { return l.effect == name; });
-      throw std::runtime_error(fmt::format("effect {} cannot be hidden in the model's experiments{}", name,
-                                           left_out == all.end() ? "" : ": " + left_out->why));
-    }
+    assert(e < space_.effects.size());
     const CandidateEffect& effect = space_.effects[e];
     const double ends[] = {effect.lowest(), effect.highest()};
     double sign = random_.uniform() < 0.5 ? -1 : 1;
@@ -333,6 +328,10 @@ class TwinMaker {
 
 }  // namespace
 
+ModelSpace twin_space(const DiagnosisModel& model, const std::filesystem::path& asset_dir) {
+  return space_of(model, experiments_of(model), {}, asset_dir);
+}
+
 Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::filesystem::path& asset_dir,
                const RunThrough& design, const RunThrough& hidden) {
   if (model.experiments.empty())
@@ -342,7 +341,7 @@ Twin make_twin(const DiagnosisModel& model, const TwinSpec& spec, const std::fil
 
 std::string twin_answer(const DiagnosisModel& model, const TwinSpec& spec, const TwinTruth& truth,
                         const std::filesystem::path& asset_dir) {
-  const ModelSpace space = space_of(model, experiments_of(model), {}, asset_dir);
+  const ModelSpace space = twin_space(model, asset_dir);
   nlohmann::ordered_json answer;
   answer["seed"] = spec.seed;
   answer["repeats"] = spec.repeats;

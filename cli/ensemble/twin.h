@@ -10,7 +10,7 @@
 namespace scree {
 
 struct TwinSpec {
-  std::vector<std::string> effects;  ///< hidden ones; none: base parameters alone are off
+  std::vector<std::string> effects;  ///< hidden ones, of twin_space; none: base parameters alone are off
   double strength = 4;               ///< what detectability() each effect has on its own
   int repeats = 5;                   ///< of every experiment
   double noise =
@@ -34,6 +34,9 @@ struct Twin {
 struct TooWeak : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+/// What a twin is drawn from: the model's parameters, and those of its effects that act in its experiments.
+ModelSpace twin_space(const DiagnosisModel& model, const std::filesystem::path& asset_dir);
 
 /// Draws base parameters from the inner part of their ranges and a direction for every effect, looks for the
 /// amplitude at which the effect shifts the model's observables by `strength` standard uncertainties (root

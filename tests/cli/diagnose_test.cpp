@@ -54,6 +54,31 @@ TEST_F(DiagnoseCli, TheModelFileOfTheManualIsOne) {
   EXPECT_THAT(said.text, HasSubstr("ok: model, parameters material.mu, material.mu_r"));
 }
 
+// What chance hides is drawn from effects that act; here none does.
+TEST_F(DiagnoseCli, ATwinHidesOnlyWhatActs) {
+  const std::string fall =
+      "parameters: {material.local_damping: {nominal: 0.4, from: 0.3, to: 0.5}}\n"
+      "experiments: {fall: {scenario: " SCREE_SOURCE_DIR
+      "/scenarios/drop_test.yaml, observables: [rebound_height_m], errors: {rebound_height_m: 0.01}}}\n";
+  put("fall.yaml", fall + "effects: [release_speed, image_blur]\n");
+  put("all.yaml", fall + "set: {effects.cohesion.bond_number: 0.1}\n");
+  const auto twin = [&](const std::string& model, const std::string& more) {
+    return call("twin " + (folder / model).string() + " --store " + (folder / "store.sqlite").string() +
+                " --strength medium --out " + (folder / "out").string() + more);
+  };
+  const std::string none = "--effect image_blur: cannot be hidden in the model's experiments: ";
+  EXPECT_THAT(twin("fall.yaml", " --effect image_blur").text, HasSubstr(none + "changes nothing"));
+  const Called given = twin("all.yaml", " --effect cohesion");
+  EXPECT_EQ(given.code, 2);
+  EXPECT_THAT(given.text, HasSubstr("the model gives it"));
+  EXPECT_FALSE(fs::exists(folder / "out"));
+  for (const char* seed : {" --seed 1", " --seed 2", " --seed 3", " --seed 4"}) {
+    const Called made = twin("fall.yaml", std::string(" --force") + seed);
+    EXPECT_EQ(made.code, 0) << made.text;
+    EXPECT_THAT(slurp(folder / "out.answer.json"), HasSubstr("\"effects\": []"));
+  }
+}
+
 TEST_F(DiagnoseCli, ASpreadsheetIsRead) {
   // Semicolons, decimal commas, millimetres, kilograms, columns of others.
   const Called plan = planned(

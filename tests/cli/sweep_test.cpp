@@ -1,6 +1,8 @@
 // Sweeps, calibrations and predictions as a user meets them: killed at any moment, two at once, wrong files.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +13,7 @@
 #include <vector>
 
 #include "scree_version.h"
+#include "sim/io/results_store.h"
 #include "tests/cli/background.h"
 #include "tests/cli/call.h"
 
@@ -212,6 +215,107 @@ TEST_F(SweepCli, PredictsAndCalibratesFromTheStore) {
       << call("validate " + in_folder("mine.yaml")).text;
 }
 
+// Points along a diagonal say nothing of the corners beside it; those of a grid say all of its corners.
+TEST_F(SweepCli, PredictsOnlyAmongThePointsOfADesign) {
+  const std::string drop = "scenario: " + std::string(SCREE_SOURCE_DIR) +
+                           "/scenarios/drop_test.yaml\nseeds: [1]\n",
+                    damping = "material.local_damping", height = "experiment.height_m",
+                    store = " --store " + in_folder("store.sqlite");
+  std::string points;
+  for (int k = 0; k <= 4; ++k)
+    points += fmt::format("{}{{{}: {:g}, {}: {:g}}}", k == 0 ? "" : ", ", damping, 0.3 + 0.05 * k, height,
+                          1 + 0.25 * k);
+  write("list.yaml", drop + "design: {type: list, points: [" + points + "]}\n");
+  write("grid.yaml", drop + "design: {type: grid, parameters: {" + damping + ": [0.3, 0.4, 0.5], " + height +
+                         ": [1, 1.5, 2]}}\n");
+  const auto predict = [&](const std::string& file, const std::string& at, const std::string& h) {
+    return call("predict " + in_folder(file) + store + " --output rebound_height_m " + damping + "=" + at +
+                " " + height + "=" + h);
+  };
+  ASSERT_EQ(call("sweep " + in_folder("list.yaml") + store).code, 0);
+  const Called corner = predict("list.yaml", "0.3", "2");
+  EXPECT_EQ(corner.code, 2);
+  EXPECT_THAT(
+      corner.text,
+      HasSubstr("material.local_damping=0.3 experiment.height_m=2: lies outside of what was simulated"));
+  EXPECT_THAT(corner.text, HasSubstr("material.local_damping=0.4 experiment.height_m=1.5"));
+  EXPECT_EQ(predict("list.yaml", "0.4", "1.5").code, 0);
+  EXPECT_EQ(predict("list.yaml", "0.35", "1.25").code, 0);
+  ASSERT_EQ(call("sweep " + in_folder("grid.yaml") + store).code, 0);
+  const Called there = predict("grid.yaml", "0.3", "2");
+  EXPECT_EQ(there.code, 0) << there.text;
+  EXPECT_THAT(there.text, HasSubstr("rebound_height_m = 0.5"));  // 2 m ((1 - 0.3) / (1 + 0.3))^2 = 0.58 m
+}
+
+// A rock that falls rebounds alike whatever its friction; a node is found if the friction that is searched
+// lies on its ray, at most 5 times its own.
+TEST_F(SweepCli, NodesWithoutAnEquivalentAreCounted) {
+  const auto fit = [&](const std::string& mu) {
+    write("engines.yaml",
+          "scenario: " + std::string(SCREE_SOURCE_DIR) +
+              "/scenarios/drop_test.yaml\nseeds: [1]\nequivalent:\n  output: rebound_height_m\n"
+              "  nodes: {material.mu: [" +
+              mu + "], material.mu_r: [" + mu +
+              "], material.local_damping: [0.4]}\n"
+              "  search: {numerics.impulse_friction: {from: 0.6, to: 0.9}, "
+              "numerics.impulse_rolling: {from: 0.6, to: 0.9}}\n"
+              "  points: 4\n  rounds: 1\n  within: 100\n");
+    return call("calibrate " + in_folder("engines.yaml") + " --store " + in_folder("store.sqlite") +
+                " --force --out " + in_folder("fit"));
+  };
+  const Called some = fit("0.1, 0.4");
+  EXPECT_EQ(some.code, 0) << some.text;
+  EXPECT_THAT(some.text, HasSubstr("3 of 4 nodes are left out"));
+  EXPECT_THAT(some.text, HasSubstr("copy it to assets/impulse"));
+  const Called none = fit("0.05, 0.1");
+  EXPECT_EQ(none.code, 1) << none.text;
+  EXPECT_THAT(none.text, HasSubstr("4 of 4 nodes are left out"));
+  EXPECT_THAT(none.text, testing::Not(HasSubstr("copy it to assets/impulse")));
+}
+
+// A rock that falls: hundredths of a second.
+TEST_F(SweepCli, ARunThatAnotherProgramTriesAgainHasNotFailed) {
+  write("calibration.yaml", "scenario: " + std::string(SCREE_SOURCE_DIR) +
+                                "/scenarios/drop_test.yaml\nseeds: [1]\n"
+                                "parameters: {material.local_damping: {from: 0.4, to: 0.7}}\n"
+                                "targets: [{output: rebound_height_m, value: 0.1, uncertainty: 0.02}]\n"
+                                "method: {type: bayes, first: 5, most: 5}\n");
+  const std::string store = in_folder("store.sqlite");
+  const auto calibrate = [&](const std::string& out) {
+    return std::vector<std::string>{"calibrate",   in_folder("calibration.yaml"), "--store", store, "--out",
+                                    in_folder(out)};
+  };
+  ASSERT_EQ(start(calibrate("whole")).code(), 0) << slurp(folder / "log");
+  sqlite3* db = nullptr;
+  ASSERT_EQ(sqlite3_open(store.c_str(), &db), SQLITE_OK);
+  std::vector<std::string> keys;
+  const auto ask = [&](const char* sql) {
+    const auto keep = [](void* all, int, char** row, char**) {
+      static_cast<std::vector<std::string>*>(all)->emplace_back(row[0]);
+      return 0;
+    };
+    ASSERT_EQ(sqlite3_exec(db, sql, keep, &keys, nullptr), SQLITE_OK) << sqlite3_errmsg(db);
+  };
+  ask("SELECT key FROM runs LIMIT 2");
+  ask("UPDATE runs SET state = 'failed', message = 'made up' WHERE key IN (SELECT key FROM runs LIMIT 2)");
+  sqlite3_close(db);
+  ASSERT_EQ(keys.size(), 2u);
+
+  scree::ResultsStore other(store);
+  const auto finish = [&](const std::string& key) {
+    return other.finish(key, "", other.find(key)->outputs, 1);
+  };
+  ASSERT_EQ(other.claim({keys[0], "", 1}, "1", true), scree::Claim::ours);
+  Background again = start(calibrate("again"));
+  again.ended_within(1);  // it knows by now that the second has failed, and waits for the first
+  ASSERT_EQ(other.claim({keys[1], "", 1}, "1", true), scree::Claim::ours);
+  EXPECT_TRUE(finish(keys[0]));
+  EXPECT_FALSE(again.ended_within(4)) << slurp(folder / "log");
+  EXPECT_TRUE(finish(keys[1]));
+  EXPECT_EQ(again.code(), 0);
+  EXPECT_THAT(slurp(folder / "log"), testing::Not(HasSubstr("left out")));
+}
+
 TEST_F(SweepCli, OutputsOfSectionsThatAreNotCutAreRefusedBeforeSimulations) {
   write("dump.yaml",
         "scenario: " + std::string(SCREE_SOURCE_DIR) +
@@ -223,6 +327,16 @@ TEST_F(SweepCli, OutputsOfSectionsThatAreNotCutAreRefusedBeforeSimulations) {
             std::string::npos)
       << called.text;
   EXPECT_FALSE(fs::exists(in_folder("store.sqlite")));
+}
+
+TEST_F(SweepCli, TheTableIsWrittenBesideWhatFailed) {
+  const Called called =
+      call("sweep " SCREE_SOURCE_DIR "/scenarios/sweeps/repose_lab.yaml --from " SCREE_SOURCE_DIR
+           "/assets/sweeps/repose_lab.csv --failed --export " +
+           in_folder("all.csv"));
+  EXPECT_EQ(called.code, 0);
+  EXPECT_THAT(called.text, HasSubstr("no run has failed\ntable: "));
+  EXPECT_TRUE(fs::exists(folder / "all.csv"));
 }
 
 // Where a caller ignores its children the system keeps to itself how they ended.

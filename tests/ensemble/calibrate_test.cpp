@@ -140,5 +140,61 @@ TEST(Calibrate, AQuarterOfTheGridsSimulationsIsAsGood) {
   EXPECT_LT(bayes_error, 1.3 * grid_error);
 }
 
+// Two formulae without scatter stand in for two outputs; the truth of both is 0.6 and 0.2.
+std::vector<double> two_outputs(double mu, double mu_r) {
+  return {10 + 30 * mu + 40 * mu_r, 50 + 60 * mu - 80 * mu_r};
+}
+
+CalibrationSpec two_targets(CalibrationSpec::Method method) {
+  CalibrationSpec spec;
+  spec.parameters = {{"material.mu", 0.1, 0.9}, {"material.mu_r", 0.1, 0.9}};
+  spec.seeds = {1};
+  const std::vector<double> measured = two_outputs(0.6, 0.2);
+  spec.targets = {{"angle_deg", measured[0], 1, "rock"}, {"chi_S6", measured[1], 1, "rock"}};
+  spec.method = method;
+  spec.grid_points = 5;
+  spec.first_points = 8;
+  spec.most_simulations = 16;
+  return spec;
+}
+
+// What meets the first alone, the pair with mu = mu_r or the crossing on a grid, would miss the second.
+TEST(Calibrate, TwoTargetsAreBothMet) {
+  for (const auto method : {CalibrationSpec::Method::grid, CalibrationSpec::Method::bayes}) {
+    const CalibrationSpec spec = two_targets(method);
+    const auto result = calibrate(spec, [&](const std::vector<CalibrationRun>& runs) {
+      std::vector<std::vector<double>> values;
+      for (const CalibrationRun& run : runs)
+        values.push_back(
+            two_outputs(parameter_value(spec, 0, run.at[0]), parameter_value(spec, 1, run.at[1])));
+      return values;
+    });
+    const CalibrationAnswer answer = answer_of(spec, result);
+    EXPECT_FALSE(answer.equal);
+    EXPECT_NEAR(answer.value[0], 0.6, 0.02);
+    EXPECT_NEAR(answer.value[1], 0.2, 0.02);
+    for (const double missed : answer.missed_by) EXPECT_LT(std::abs(missed), 1);
+  }
+}
+
+TEST(Calibrate, TwoTargetsOfOneParameterOnAGridAreBothWeighed) {
+  CalibrationSpec spec = two_targets(CalibrationSpec::Method::grid);
+  spec.parameters.pop_back();
+  spec.targets[0].uncertainty = 20;  // where it is met, 0.8, says little
+  spec.targets[0].value = two_outputs(0.8, 0.2)[0];
+  spec.targets[1].value = two_outputs(0.5, 0.2)[1];
+  const auto result = calibrate(spec, [&](const std::vector<CalibrationRun>& runs) {
+    std::vector<std::vector<double>> values;
+    for (const CalibrationRun& run : runs)
+      values.push_back(two_outputs(parameter_value(spec, 0, run.at[0]), 0.2));
+    return values;
+  });
+  const CalibrationAnswer answer = answer_of(spec, result);
+  EXPECT_FALSE(answer.interpolated);
+  EXPECT_NEAR(answer.value[0], 0.5, 0.01);
+  EXPECT_GT(answer.value[0], answer.interval[0][0]);
+  EXPECT_LT(answer.value[0], answer.interval[0][1]);
+}
+
 }  // namespace
 }  // namespace scree

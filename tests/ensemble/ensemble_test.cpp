@@ -2,6 +2,7 @@
 #include "cli/ensemble/ensemble.h"
 
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -152,6 +153,33 @@ TEST_F(Runs, InterruptedOnesAreGivenBackAndEnd) {
   for (const RunRequest& run : requests) EXPECT_FALSE(store.find(run.key).has_value());
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
   EXPECT_FALSE(fs::exists(folder / "store.sqlite.work"));
+}
+
+// A run of a program that was stopped for long (a laptop that slept) is taken by another, here of another
+// machine: it is waited for like any other that others do.
+TEST_F(Runs, OneWhoseClaimWasLostIsLeftToItsNewOwner) {
+  ResultsStore store(folder / "store.sqlite");
+  const auto change = [&](const std::string& sql) {
+    sqlite3* db = nullptr;
+    ASSERT_EQ(sqlite3_open(store.file().c_str(), &db), SQLITE_OK);
+    EXPECT_EQ(sqlite3_exec(db, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(db);
+    sqlite3_close(db);
+  };
+  requests.resize(1);
+  LocalProcesses processes(1, 5, program("sleep 0.5"));
+  bool taken = false, left = false;
+  const EnsembleProgress end =
+      run_ensemble(requests, store, processes, {"1", false}, [&](const EnsembleProgress& p) {
+        if (p.here == 1 && !taken) change("UPDATE runs SET owner = 'elsewhere|1|1'"), taken = true;
+        if (p.others == 1 && !left) change("UPDATE runs SET state = 'done', owner = NULL"), left = true;
+        return true;
+      });
+  EXPECT_TRUE(taken && left);
+  EXPECT_EQ(end.done, 1u);
+  EXPECT_EQ(end.failed, 0u);
+  EXPECT_EQ(end.ended_here, 0u);
+  EXPECT_TRUE(store.find("key0")->outputs.empty()) << "the result of the other is kept";
+  EXPECT_EQ(begun().size(), 1u);
 }
 
 // What a resumed run had done before is not counted as done in the time that this program has worked.

@@ -98,6 +98,10 @@ TEST_F(SweepFile, RandomDesignsStayInTheirRanges) {
 TEST_F(SweepFile, WrongOnesAreToldWithTheirPlace) {
   EXPECT_THAT(first_error("desing: {}\n"), HasSubstr("friction.yaml:2:1: unknown key 'desing'"));
   EXPECT_THAT(first_error("seeds: [1]\n"), HasSubstr("'design' is missing"));
+  EXPECT_THAT(
+      first_error(
+          "design: {type: sobol, points: 4, seed: 5, parameters: {material.mu: {from: 0.1, to: 0.2}}}\n"),
+      HasSubstr("unknown key 'seed' in sobol; allowed: type, parameters, points"));
   EXPECT_THAT(first_error("design: {type: cube}\n"), HasSubstr("one of grid, list, latin_hypercube, sobol"));
   EXPECT_THAT(first_error("design: {type: grid, parameters: {material.mu: 0.2}}\n"),
               HasSubstr("a list of values is expected"));
