@@ -21,7 +21,9 @@ struct Axis {
   double value(double share) const { return low + share * (high - low); }
 };
 
-constexpr double kOutside = 1e-4;  // of the ranges: beyond what rounding does to a point on the edge
+// Distance from the convex hull of the runs, in ranges: beyond what rounding does to a point on the edge; and
+// over the root of the number of parameters, a quarter of the diagonal of the ranges.
+constexpr double kOutside = 1e-4, kFarOutside = 0.25;
 
 int refuse(const std::string& message) {
   fmt::print(stderr, "{}\n", message);
@@ -117,7 +119,8 @@ int run_predict(const PredictOptions& options) {
       x(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(k)) = axes[k].share(at[r][k]);
   // Within the ranges of all parameters there may be no runs around it: beside points along a diagonal, say.
   const Eigen::VectorXd inside = scree::nearest_in_hull(x, point);
-  if ((inside - point).norm() > kOutside) {
+  const double outside = (inside - point).norm();
+  if (outside > kFarOutside * std::sqrt(static_cast<double>(axes.size()))) {
     std::vector<std::string> nearest;
     for (std::size_t k = 0; k < axes.size(); ++k)
       nearest.push_back(
@@ -133,5 +136,7 @@ int run_predict(const PredictOptions& options) {
   fmt::print("90 % interval of the mean over seeds: {:.4g} to {:.4g}\n", p.mean - mean, p.mean + mean);
   fmt::print("90 % interval of one seed:            {:.4g} to {:.4g}\n", p.mean - one, p.mean + one);
   fmt::print("from {} runs\n", values.size());
+  if (outside > kOutside)
+    fmt::print("note: no runs lie all around this point, as in a corner: it is extrapolated\n");
   return kOk;
 }
