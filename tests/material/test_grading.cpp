@@ -9,6 +9,7 @@
 
 #include "scree_version.h"
 #include "sim/material/grading.h"
+#include "sim/material/input_text.h"
 
 namespace scree {
 namespace {
