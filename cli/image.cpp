@@ -14,6 +14,7 @@
 #include "analysis/results/results.h"
 #include "cli/commands.h"
 #include "cli/ensemble/dataset_write.h"
+#include "cli/ensemble/output_scope.h"
 #include "cli/ensemble/scenario_patch.h"
 #include "cli/option_values.h"
 #include "cli/output_folder.h"
@@ -162,6 +163,8 @@ WrittenDataset dataset_of(const ImageOptions& options, const scree::Scenario& sc
   scree::DatasetDraft::Experiment experiment;
   experiment.name = std::regex_replace(scenario.name, std::regex("[/,;\"]"), "_");
   experiment.scenario = options.scenario;
+  const scree::MeasuredSections sections = scree::measured_sections(scenario, options.sections);
+  experiment.overrides = sections.overrides;
   for (int k = 1; k <= options.sections; ++k) {
     std::vector<double> chi, d50;
     for (const scree::AnalysedPhoto& photo : photos) {
@@ -170,7 +173,7 @@ WrittenDataset dataset_of(const ImageOptions& options, const scree::Scenario& sc
     }
     for (const auto& [name, values] : {std::pair("chi", chi), std::pair("d50_m", d50)})
       if (const scree::MeanStd mean = scree::mean_std(values); mean.n > 0)
-        experiment.observables[fmt::format("{}_S{}", name, k)] = mean;
+        experiment.observables[fmt::format("{}_S{}{}", name, k, sections.of)] = mean;
   }
   draft.experiments.push_back(std::move(experiment));
   return {out, [draft = std::move(draft)](const fs::path& folder) {

@@ -12,6 +12,7 @@
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 namespace {
 
@@ -70,6 +71,24 @@ TEST_F(Field, ReportTablesAndDataset) {
                               "/scenarios/quick_dump.yaml --observables bogus --force --out " + out);
   EXPECT_EQ(refused.code, 2) << refused.text;
   EXPECT_EQ(call("validate " + out + "/dataset/dataset.yaml").code, 0);
+}
+
+// Sections of the pictures are held against sections of a pile that is cut alike, whatever the scenario says.
+TEST_F(Field, ADatasetComparesSectionsOfTheSameCut) {
+  const auto dataset = [&](const std::string& name, const std::string& output) {
+    const std::string scenario =
+        write(name + ".yaml", "extends: " + source + "/scenarios/quick_dump.yaml\noutput: " + output + "\n");
+    // A name behind --observables is not one of them.
+    const Called called = call("field --scenario " + scenario + " --out " + (folder / name).string() +
+                               " --observables chi,d50_m " + table());
+    EXPECT_EQ(called.code, 0) << called.text;
+    return slurp(folder / name / "dataset/dataset.yaml") + slurp(folder / name / "dataset/observables.csv");
+  };
+  EXPECT_THAT(dataset("own", "{sections: 2}"), AllOf(HasSubstr("chi_S2,"), Not(HasSubstr("set:"))));
+  EXPECT_THAT(dataset("further", "{sections: 6, further_sections: [2]}"),
+              AllOf(HasSubstr("chi_S2of2,"), HasSubstr("d50_m_S1of2,"), Not(HasSubstr("set:"))));
+  EXPECT_THAT(dataset("other", "{sections: 6, further_sections: [3]}"),
+              AllOf(HasSubstr("chi_S2,"), HasSubstr("output.sections: 2")));
 }
 
 TEST_F(Field, RefusesWithOneLine) {
