@@ -188,7 +188,7 @@ Picture draw_chi_fit(const FieldAnalysis& field, const fs::path& folder) {
     blocks += "END\n";
     return fmt::format(
         "set title '{0}: {1:.3f} x, R² {2:.2f}, about the mean {3:.2f}' offset 0,-0.6 font ',11'\n"
-        "set xlabel 'D90 / D15 of the whole slope' offset 0,0.6\nset ylabel 'χ' offset 1.5,0\nset yrange "
+        "set xlabel 'D90 / D15 of the rock as dumped' offset 0,0.6\nset ylabel 'χ' offset 1.5,0\nset yrange "
         "[{4}:{5}]\n"
         "plot 0 with lines lc rgb '#888888', ${0} using 1:2 with points pt 7 ps 0.5 lc rgb '{6}', {1}*x with "
         "lines lw 1.6 lc rgb '{7}'\n",

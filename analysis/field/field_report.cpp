@@ -117,22 +117,20 @@ std::string ksat_table(const FieldAnalysis& field) {
         any_size(r.taylor));
   return fmt::format(
              "<h2>Hydraulic conductivity</h2>\n<p>Of the curves that can stand for a section in all pictures "
-             "(medians or means of the shares passing, means of the diameters), "
-             "over that of the whole slope, at equal "
-             "void ratio; and as numbers at a void ratio of {}. The modified Kozeny-Carman formula gives "
-             "cm/s for D10 in cm and the unit weight in "
-             "kN/m³ (C_G 0.1; in SI units 0.01). Taylor's formula has the square of D50; the thesis's ratios "
-             "follow from a power of 1.5, with which "
-             "its constant of 0.004 would need the unit of a root of a length. Both hold for laminar flow in "
-             "soils: for blocks only ratios mean "
-             "something.</p>\n",
+             "(medians or means of the shares passing, means of the diameters), over that of the rock as "
+             "dumped, {}, at equal void ratio; and as numbers at a void ratio of {}. The modified "
+             "Kozeny-Carman formula gives cm/s for D10 in cm and the unit weight in kN/m³ (C_G 0.1; in SI "
+             "units 0.01). Taylor's formula has the square of D50; the thesis's ratios follow from a power "
+             "of "
+             "1.5, with which its constant of 0.004 would need the unit of a root of a length. Both hold for "
+             "laminar flow in soils: for blocks only ratios mean something.</p>\n",
+             field.options.original ? "the original grading given" : "the same curve of the whole slopes",
              number_text(field.options.void_ratio)) +
          table(
              "<th class=\"word\">Section</th><th class=\"word\">Curve</th><th>D10 m</th><th>D50 "
-             "m</th><th>Cu</th><th>Kozeny-Carman over "
-             "whole</th><th>Taylor, D50<sup>1.5</sup>, over whole</th><th>Taylor, D50², over "
-             "whole</th><th>Kozeny-Carman cm/s</th><th>m/s</th>"
-             "<th>Taylor, D50², m/s</th>",
+             "m</th><th>Cu</th><th>Kozeny-Carman over rock as dumped</th><th>Taylor, D50<sup>1.5</sup>, over "
+             "rock as dumped</th><th>Taylor, D50², over rock as dumped</th><th>Kozeny-Carman "
+             "cm/s</th><th>m/s</th><th>Taylor, D50², m/s</th>",
              rows);
 }
 

@@ -141,17 +141,19 @@ std::vector<ConductivityRow> conductivity_rows(const FieldAnalysis& field) {
   std::vector<ConductivityRow> rows;
   const double e = field.options.void_ratio;
   for (const bool filled : {false, true})
-    for (const CurveKind kind : kCurveKinds)
+    for (const CurveKind kind : kCurveKinds) {
+      const auto dumped = field.as_dumped(kind, filled);
       for (const FieldSection* section : parts_of(field)) {
-        const Grading *curve = section->curve(kind, filled), *whole = field.whole.curve(kind, filled);
-        if (curve == nullptr || whole == nullptr) continue;
-        const PoreMaterial here = pore_material(*curve, e), there = pore_material(*whole, e);
+        const Grading* curve = section->curve(kind, filled);
+        if (curve == nullptr || !dumped) continue;
+        const PoreMaterial here = pore_material(*curve, e), there = pore_material(*dumped, e);
         rows.push_back({section->name, kind, filled, here.d10, here.d50, here.cu,
                         conductivity_kozeny_carman(here), conductivity_taylor(here),
                         conductivity_ratio_kozeny_carman(here, there), conductivity_ratio_taylor(here, there),
                         conductivity_ratio_taylor(here, there, 2)});
       }
   return rows;
+    }
 }
 
 const char* verdict_in_words(PrintedVerdict verdict) {
