@@ -177,7 +177,7 @@ std::string printed_table(const std::vector<HeldValue>& printed) {
   std::string rows;
   for (const HeldValue& held : printed) {
     const PrintedValue& p = held.printed;
-    const std::string unit = p.unit == "-" ? "" : " " + p.unit;
+    const std::string unit = p.unit == "-" ? "" : fmt::format(" {}", html_escaped(p.unit));
     rows += fmt::format(
         "<tr><td class=\"word\">{}</td><td>{}{}{}</td><td>{}{}<small>{}</small></td><td class=\"word "
         "{}\">{}</td><td class=\"word\">{}</td></tr>\n",
