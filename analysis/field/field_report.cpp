@@ -199,16 +199,22 @@ std::string printed_table(const std::vector<HeldValue>& printed) {
              rows);
 }
 
+/// Over pictures, as `format` has it; a dash where none has it.
+std::string mean_in_words(const FieldSection& section, const std::string& quantity, const char* format) {
+  const double mean = mean_std(section.values.at(quantity)).mean;
+  return std::isfinite(mean) ? fmt::format(fmt::runtime(format), mean) : "–";
+}
+
 }  // namespace
 
 std::vector<std::string> field_in_words(const FieldAnalysis& field, const std::vector<HeldValue>& printed) {
   std::vector<std::string> lines;
   const FieldSection &crest = field.sections.front(), &toe = field.sections.back();
-  lines.push_back(fmt::format(
-      "{} pictures in {} sections: chi from {:.2f} ({}) to {:.2f} ({}), D50 from {:.3g} to {:.3g} m",
-      field.pictures.size(), field.sections.size(), mean_std(crest.values.at("chi")).mean, crest.name,
-      mean_std(toe.values.at("chi")).mean, toe.name, mean_std(crest.values.at("d50")).mean,
-      mean_std(toe.values.at("d50")).mean));
+  lines.push_back(fmt::format("{} pictures in {} sections: chi from {} ({}) to {} ({}), D50 from {} to {} m",
+                              field.pictures.size(), field.sections.size(),
+                              mean_in_words(crest, "chi", "{:.2f}"), crest.name,
+                              mean_in_words(toe, "chi", "{:.2f}"), toe.name,
+                              mean_in_words(crest, "d50", "{:.3g}"), mean_in_words(toe, "d50", "{:.3g}")));
   for (const auto& [name, words] :
        {std::pair{"ksat_kcm_rel", "Kozeny-Carman"}, std::pair{"ksat_taylor_rel", "Taylor"}}) {
     const Spread s = spread_over(ratio_over_pictures(toe, crest, name));
