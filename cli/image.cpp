@@ -30,6 +30,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kOverlaySide = 1600;  // px
+constexpr int kFewestKnown = 3;     // grains for a line and a deviation about it
 
 bool settings_of(const ImageOptions& options, scree::PhotoAnalysisSettings& settings) {
   if (!options.scale.empty()) {
@@ -52,6 +53,7 @@ bool settings_of(const ImageOptions& options, scree::PhotoAnalysisSettings& sett
   settings.neck = options.neck;
   settings.threshold = options.threshold == "local" ? scree::Threshold::local : scree::Threshold::otsu;
   settings.edges = !options.no_edges;
+  settings.rock_within_frame = !options.truth.empty();  // scree render lays it so
   if (options.shape_factor > 0) settings.shape_factor = options.shape_factor;
   return true;
 }
@@ -97,7 +99,7 @@ double shape_factor_from(const fs::path& table_file, scree::PhotoAnalysisSetting
 
 void print_gradings(const scree::AnalysedPhoto& photo) {
   fmt::print("{}: {} grains, {:.4g} cm/px\n", photo.name, photo.found.grains.size(),
-             100 * photo.found.scale.at(photo.found.region_box.y + photo.found.region_box.height / 2.0));
+             100 * photo.found.scale.at(photo.found.region.middle_y()));
   for (const std::string& note : photo.found.notes) fmt::print("note: {}\n", note);
   fmt::print("{:<8} {:>7} {:>8} {:>8} {:>8} {:>8} {:>6} {:>6} {:>7}\n", "section", "grains", "D10, cm",
              "D50, cm", "D80, cm", "D95, cm", "Cu", "Cc", "chi");
@@ -112,6 +114,10 @@ void print_gradings(const scree::AnalysedPhoto& photo) {
 }
 
 void print_check(const scree::TruthCheck& check) {
+  if (!check.known[0].curve) {
+    fmt::print("known rock: none of it in sight here; is this the truth of this picture?\n");
+    return;
+  }
   double worst = 0;
   for (std::size_t k = 1; k < check.known.size(); ++k)
     if (std::isfinite(check.known[k].chi))
@@ -133,22 +139,24 @@ void print_bias(const scree::ImageBias& bias) {
     fmt::print("{:>16} {:>8} {:>8.0f}% {:>6} {:>12}\n", fmt::format("{:.3f} - {:.3f}", size.low, size.high),
                size.visible, 100.0 * size.detected / size.visible, scree::decimals_text(size.ratio, 2),
                scree::decimals_text(size.deviation, 2));
+  fmt::print("{}\n", detection_in_words(bias));
 }
 
 // The bias as effects of a scenario; their ranges are those of `scree effects`.
 std::string effects_yaml(const scree::ImageBias& bias, const fs::path& scenario, const fs::path& folder) {
   std::vector<std::string> values;
-  const double ratio = std::clamp(bias.limit / bias.reference, 0.0, 2.0);
-  values.push_back(fmt::format("effects.detection_limit.ratio={:.4g}", ratio));
+  const double ratio = std::clamp(bias.limit.value_or(0) / bias.reference, 0.0, 2.0);
+  if (bias.limit) values.push_back(fmt::format("effects.detection_limit.ratio={:.4g}", ratio));
   if (ratio > 0) values.push_back(fmt::format("effects.detection_limit.steepness={:.4g}", bias.steepness));
   values.push_back(fmt::format("effects.image_blur.width={:.4g}", std::clamp(bias.width, 0.0, 2.0)));
   values.push_back(
       fmt::format("effects.image_shape_bias.exponent={:.4g}", std::clamp(bias.exponent, -0.9, 2.0)));
-  const std::vector<std::string> comment{
+  std::vector<std::string> comment{
       "Bias of image analysis, measured on virtual photographs (scree image --truth); see docs/image.md."};
+  if (!bias.limit) comment.push_back(fmt::format("No detection_limit: {}.", detection_in_words(bias)));
   if (!scenario.empty()) return scree::scenario_patch(scenario, folder, values, comment);
-  return "# " + comment[0] + "\n# To be added to a scenario, or give --scenario.\n" +
-         scree::nested_yaml(values);
+  comment.emplace_back("To be added to a scenario, or give --scenario.");
+  return fmt::format("# {}\n{}", fmt::join(comment, "\n# "), scree::nested_yaml(values));
 }
 
 // Chi and D50 of every section, the pictures being repeats.
@@ -264,7 +272,13 @@ int run_image(const ImageOptions& options) {
     report.bias = scree::measure_bias(checked, report.settings.model);
     print_bias(*report.bias);
     scree::write_text_file(out / "bias.csv", scree::bias_csv(*report.bias));
-    scree::write_text_file(out / "effects.yaml", effects_yaml(*report.bias, options.scenario, out));
+    if (report.bias->matched < kFewestKnown) {
+      fmt::print("note: no effects.yaml: {} known grains are detected, too few to say anything of size\n",
+                 report.bias->matched);
+      fs::remove(out / "effects.yaml");  // of an older analysis
+    } else {
+      scree::write_text_file(out / "effects.yaml", effects_yaml(*report.bias, options.scenario, out));
+    }
   }
   report.version = fmt::format("scree {} ({})", SCREE_VERSION, SCREE_REVISION);
   scree::write_image_report(report, out);

@@ -221,6 +221,26 @@ TEST_F(PictureFile, RenderAndImageWorkTogether) {
   EXPECT_THAT(slurp(folder_ / "out" / "bias.csv"), HasSubstr("detected_share"));
 }
 
+TEST_F(PictureFile, OfNoKnownGrainNoEffectsAreMade) {
+  write_picture(folder_ / "discs.png", grey_with_discs());
+  const fs::path truth = write("truth.csv",
+                               "# m_per_px = 0.01\n# scene_d50_m = 0.3\nid,x_px,y_px,diameter_m,mass_kg,"
+                               "visible_cm2,visible_share,visible_a_m,visible_b_m\n"
+                               "1,390,10,0.3,40,700,1,0.3,0.3\n");
+  const std::string command = "image " + (folder_ / "discs.png").string() + " --scale 1cm/px --truth " +
+                              truth.string() + " --sections 1 --force --out " + (folder_ / "out").string();
+  fs::create_directories(folder_ / "out");
+  write("out/effects.yaml", "of an older analysis\n");
+  // In the picture and not found; outside the region.
+  for (const char* region : {"", " --region '20,20 380,290'"}) {
+    const Called called = call(command + region);
+    EXPECT_EQ(called.code, 0) << called.text;
+    EXPECT_THAT(called.text, HasSubstr("note: no effects.yaml: 0 known grains are detected"));
+    EXPECT_FALSE(fs::exists(folder_ / "out/effects.yaml"));
+    EXPECT_TRUE(fs::exists(folder_ / "out/report.html"));
+  }
+}
+
 TEST(ScaleTarget, IsFoundInSunAndShadowAndNowhereElse) {
   cv::Mat3b picture(400, 300, cv::Vec3b(90, 95, 100));
   cv::circle(picture, {60, 40}, 20, cv::Scalar(200, 40, 210), cv::FILLED, cv::LINE_AA);
