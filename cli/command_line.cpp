@@ -328,7 +328,8 @@ Command field_command(CLI::App& all) {
   app->add_option("--printed", field.printed, "Table of printed values to hold ours against");
   app->add_option("--scenario", field.scenario, "Scenario that simulates the slope: writes a dataset");
   app->add_option("--observables", field.observables, "Of the dataset, in each section; default: chi")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);
   app->add_flag("--thesis", field.thesis,
                 "Take the pictures, the sample and the printed values of the thesis");
   app->add_option("--out", field.out, "Folder for the results; default: a free runs/NAME");

@@ -76,11 +76,9 @@ std::optional<WrittenDataset> dataset_of(const FieldCliOptions& options, const s
   scree::ScenarioResult loaded =
       scree::load_scenario(options.scenario, {}, asset_dir(), scree::ReadFor::numbers);
   if (!nothing_wrong(loaded.errors)) return std::nullopt;
-  scree::FieldDatasetRequest request{
-      options.scenario, {}, options.gradings.filename().string(), options.observables};
-  // The pile must be cut as the pictures are; that changes how it is looked at, not how it is made.
-  if (loaded.scenario.output.sections != sections)
-    request.overrides.push_back(fmt::format("output.sections={}", sections));
+  const scree::FieldDatasetRequest request{options.scenario,
+                                           scree::measured_sections(loaded.scenario, sections),
+                                           options.gradings.filename().string(), options.observables};
   return WrittenDataset(options.out / "dataset", [&field, request](const fs::path& folder) {
     return scree::write_field_dataset(field, request, folder);
   });

@@ -14,6 +14,7 @@
 #include "analysis/results/results.h"
 #include "cli/commands.h"
 #include "cli/ensemble/dataset_write.h"
+#include "cli/ensemble/output_scope.h"
 #include "cli/ensemble/scenario_patch.h"
 #include "cli/option_values.h"
 #include "cli/output_folder.h"
@@ -29,6 +30,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kOverlaySide = 1600;  // px
+constexpr int kFewestKnown = 3;     // grains for a line and a deviation about it
 
 bool settings_of(const ImageOptions& options, scree::PhotoAnalysisSettings& settings) {
   if (!options.scale.empty()) {
@@ -51,6 +53,7 @@ bool settings_of(const ImageOptions& options, scree::PhotoAnalysisSettings& sett
   settings.neck = options.neck;
   settings.threshold = options.threshold == "local" ? scree::Threshold::local : scree::Threshold::otsu;
   settings.edges = !options.no_edges;
+  settings.rock_within_frame = !options.truth.empty();  // scree render lays it so
   if (options.shape_factor > 0) settings.shape_factor = options.shape_factor;
   return true;
 }
@@ -96,7 +99,7 @@ double shape_factor_from(const fs::path& table_file, scree::PhotoAnalysisSetting
 
 void print_gradings(const scree::AnalysedPhoto& photo) {
   fmt::print("{}: {} grains, {:.4g} cm/px\n", photo.name, photo.found.grains.size(),
-             100 * photo.found.scale.at(photo.found.region_box.y + photo.found.region_box.height / 2.0));
+             100 * photo.found.scale.at(photo.found.region.middle_y()));
   for (const std::string& note : photo.found.notes) fmt::print("note: {}\n", note);
   fmt::print("{:<8} {:>7} {:>8} {:>8} {:>8} {:>8} {:>6} {:>6} {:>7}\n", "section", "grains", "D10, cm",
              "D50, cm", "D80, cm", "D95, cm", "Cu", "Cc", "chi");
@@ -111,6 +114,10 @@ void print_gradings(const scree::AnalysedPhoto& photo) {
 }
 
 void print_check(const scree::TruthCheck& check) {
+  if (!check.known[0].curve) {
+    fmt::print("known rock: none of it in sight here; is this the truth of this picture?\n");
+    return;
+  }
   double worst = 0;
   for (std::size_t k = 1; k < check.known.size(); ++k)
     if (std::isfinite(check.known[k].chi))
@@ -132,22 +139,24 @@ void print_bias(const scree::ImageBias& bias) {
     fmt::print("{:>16} {:>8} {:>8.0f}% {:>6} {:>12}\n", fmt::format("{:.3f} - {:.3f}", size.low, size.high),
                size.visible, 100.0 * size.detected / size.visible, scree::decimals_text(size.ratio, 2),
                scree::decimals_text(size.deviation, 2));
+  fmt::print("{}\n", detection_in_words(bias));
 }
 
 // The bias as effects of a scenario; their ranges are those of `scree effects`.
 std::string effects_yaml(const scree::ImageBias& bias, const fs::path& scenario, const fs::path& folder) {
   std::vector<std::string> values;
-  const double ratio = std::clamp(bias.limit / bias.reference, 0.0, 2.0);
-  values.push_back(fmt::format("effects.detection_limit.ratio={:.4g}", ratio));
+  const double ratio = std::clamp(bias.limit.value_or(0) / bias.reference, 0.0, 2.0);
+  if (bias.limit) values.push_back(fmt::format("effects.detection_limit.ratio={:.4g}", ratio));
   if (ratio > 0) values.push_back(fmt::format("effects.detection_limit.steepness={:.4g}", bias.steepness));
   values.push_back(fmt::format("effects.image_blur.width={:.4g}", std::clamp(bias.width, 0.0, 2.0)));
   values.push_back(
       fmt::format("effects.image_shape_bias.exponent={:.4g}", std::clamp(bias.exponent, -0.9, 2.0)));
-  const std::vector<std::string> comment{
+  std::vector<std::string> comment{
       "Bias of image analysis, measured on virtual photographs (scree image --truth); see docs/image.md."};
+  if (!bias.limit) comment.push_back(fmt::format("No detection_limit: {}.", detection_in_words(bias)));
   if (!scenario.empty()) return scree::scenario_patch(scenario, folder, values, comment);
-  return "# " + comment[0] + "\n# To be added to a scenario, or give --scenario.\n" +
-         scree::nested_yaml(values);
+  comment.emplace_back("To be added to a scenario, or give --scenario.");
+  return fmt::format("# {}\n{}", fmt::join(comment, "\n# "), scree::nested_yaml(values));
 }
 
 // Chi and D50 of every section, the pictures being repeats.
@@ -162,6 +171,8 @@ WrittenDataset dataset_of(const ImageOptions& options, const scree::Scenario& sc
   scree::DatasetDraft::Experiment experiment;
   experiment.name = std::regex_replace(scenario.name, std::regex("[/,;\"]"), "_");
   experiment.scenario = options.scenario;
+  const scree::MeasuredSections sections = scree::measured_sections(scenario, options.sections);
+  experiment.overrides = sections.overrides;
   for (int k = 1; k <= options.sections; ++k) {
     std::vector<double> chi, d50;
     for (const scree::AnalysedPhoto& photo : photos) {
@@ -170,7 +181,7 @@ WrittenDataset dataset_of(const ImageOptions& options, const scree::Scenario& sc
     }
     for (const auto& [name, values] : {std::pair("chi", chi), std::pair("d50_m", d50)})
       if (const scree::MeanStd mean = scree::mean_std(values); mean.n > 0)
-        experiment.observables[fmt::format("{}_S{}", name, k)] = mean;
+        experiment.observables[fmt::format("{}_S{}{}", name, k, sections.of)] = mean;
   }
   draft.experiments.push_back(std::move(experiment));
   return {out, [draft = std::move(draft)](const fs::path& folder) {
@@ -261,7 +272,13 @@ int run_image(const ImageOptions& options) {
     report.bias = scree::measure_bias(checked, report.settings.model);
     print_bias(*report.bias);
     scree::write_text_file(out / "bias.csv", scree::bias_csv(*report.bias));
-    scree::write_text_file(out / "effects.yaml", effects_yaml(*report.bias, options.scenario, out));
+    if (report.bias->matched < kFewestKnown) {
+      fmt::print("note: no effects.yaml: {} known grains are detected, too few to say anything of size\n",
+                 report.bias->matched);
+      fs::remove(out / "effects.yaml");  // of an older analysis
+    } else {
+      scree::write_text_file(out / "effects.yaml", effects_yaml(*report.bias, options.scenario, out));
+    }
   }
   report.version = fmt::format("scree {} ({})", SCREE_VERSION, SCREE_REVISION);
   scree::write_image_report(report, out);

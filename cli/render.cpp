@@ -121,7 +121,7 @@ int run_render(const RenderOptions& options) {
   scree::write_text_file(truth, scree::truth_csv(made.truth));
   std::string chi;
   const auto gradings =
-      true_gradings(made.truth, {0, 0, made.picture.cols, made.picture.rows}, scree::PhotoAnalysisSettings{});
+      true_gradings(made.truth, scree::PhotoRegion(made.picture.size(), {}), scree::PhotoAnalysisSettings{});
   for (std::size_t k = 1; k < gradings.size(); ++k)
     chi += gradings[k].grains > 0 ? fmt::format(" {:+.2f}", gradings[k].chi) : " -";
   fmt::print(

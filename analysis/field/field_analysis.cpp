@@ -55,14 +55,15 @@ double taylor(const Grading& grading, const Grading& original) {
 
 const std::vector<AgainstOriginal>& numbers_against_original() {
   static const std::vector<AgainstOriginal> all{
-      {{"d10_rel", "D10 over that of the whole", "-", false}, relative<10>},
-      {{"d50_rel", "D50 over that of the whole", "-", false}, relative<50>},
-      {{"d80_rel", "D80 over that of the whole", "-", false}, relative<80>},
-      {{"d90_rel", "D90 over that of the whole", "-", false}, relative<90>},
-      {{"d95_rel", "D95 over that of the whole", "-", false}, relative<95>},
+      {{"d10_rel", "D10 over that of the rock as dumped", "-", false}, relative<10>},
+      {{"d50_rel", "D50 over that of the rock as dumped", "-", false}, relative<50>},
+      {{"d80_rel", "D80 over that of the rock as dumped", "-", false}, relative<80>},
+      {{"d90_rel", "D90 over that of the rock as dumped", "-", false}, relative<90>},
+      {{"d95_rel", "D95 over that of the rock as dumped", "-", false}, relative<95>},
       {{"chi", "segregation degree χ", "-", false}, segregation_degree},
-      {{"ksat_kcm_rel", "conductivity over that of the whole, Kozeny-Carman", "-", false}, kozeny_carman},
-      {{"ksat_taylor_rel", "conductivity over that of the whole, Taylor", "-", false}, taylor},
+      {{"ksat_kcm_rel", "conductivity over that of the rock as dumped, Kozeny-Carman", "-", false},
+       kozeny_carman},
+      {{"ksat_taylor_rel", "conductivity over that of the rock as dumped, Taylor", "-", false}, taylor},
   };
   return all;
 }
@@ -188,6 +189,13 @@ const FieldSection* FieldAnalysis::section(const std::string& name) const {
   const auto found =
       std::find_if(sections.begin(), sections.end(), [&](const FieldSection& s) { return s.name == name; });
   return found == sections.end() ? nullptr : &*found;
+}
+
+std::optional<Grading> FieldAnalysis::as_dumped(CurveKind kind, bool fines) const {
+  if (fines && !options.sieved) return std::nullopt;
+  if (options.original) return fines ? with_fines(*options.original, options) : *options.original;
+  const Grading* slope = whole.curve(kind, fines);
+  return slope == nullptr ? std::nullopt : std::optional(*slope);
 }
 
 FieldAnalysis analyse_field(const SlopeGradings& gradings, const FieldOptions& options) {

@@ -83,6 +83,8 @@ struct FieldAnalysis {
   double bin = 1, ratio_bin = 1;  ///< width of bins for diameters (m), for cu
   double bin_of(const std::string& quantity) const { return quantity == "cu" ? ratio_bin : bin; }
   const FieldSection* section(const std::string& name) const;  ///< null if there is none
+  /// What a curve of a section is held against: the original grading, or the same curve of the whole slopes.
+  std::optional<Grading> as_dumped(CurveKind kind, bool with_fines) const;
 };
 
 /// Throws std::invalid_argument when pictures have neither a whole slope nor an original grading is given, or

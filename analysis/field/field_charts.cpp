@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "analysis/field/field_tables.h"
 #include "analysis/report/profile_chart.h"
@@ -25,16 +26,23 @@ int rows_for(std::size_t panels) {
   return static_cast<int>((panels + kColumns - 1) / kColumns);
 }
 
-/// A page of panels, a section each; `panel` gives what is drawn in one.
+/// A page of panels, a section each; `panel` gives what is drawn in one, nothing where a section has no
+/// values. False, and no page, if none has.
 template <class Panel>
-void draw_panels(const std::vector<FieldSection>& sections, const std::string& common, Panel panel,
+bool draw_panels(const std::vector<FieldSection>& sections, const std::string& common, Panel panel,
                  const fs::path& file) {
-  const int rows = rows_for(sections.size()),
-            columns = std::min<int>(kColumns, static_cast<int>(sections.size()));
-  std::string script = chart_terminal(kWidth, rows * kPanelHeight + 40) + common;
-  std::string plots = fmt::format("set multiplot layout {},{} spacing 0.07,0.12\n", rows, columns);
-  for (const FieldSection& section : sections) plots += panel(section, script);
-  run_gnuplot(script + plots + "unset multiplot\n", file);
+  std::string data;
+  std::vector<std::string> panels;
+  for (const FieldSection& section : sections)
+    if (std::string drawn = panel(section, data); !drawn.empty()) panels.push_back(std::move(drawn));
+  if (panels.empty()) return false;
+  const int rows = rows_for(panels.size()),
+            columns = std::min<int>(kColumns, static_cast<int>(panels.size()));
+  run_gnuplot(fmt::format("{}{}{}set multiplot layout {},{} spacing 0.07,0.12\n{}unset multiplot\n",
+                          chart_terminal(kWidth, rows * kPanelHeight + 40), common, data, rows, columns,
+                          fmt::join(panels, "")),
+              file);
+  return true;
 }
 
 std::string range_of(const FieldAnalysis& field) {
@@ -96,7 +104,8 @@ double normal_peak(double width, double std) {
   return width / (std * std::sqrt(2 * std::numbers::pi));
 }
 
-Picture draw_histogram(const FieldAnalysis& field, const char* quantity, const fs::path& folder) {
+std::optional<Picture> draw_histogram(const FieldAnalysis& field, const char* quantity,
+                                      const fs::path& folder) {
   const fs::path file = folder / fmt::format("histogram_{}.svg", quantity);
   const FieldQuantity& what = *field_quantity(quantity);
   const bool length = what.unit[0] == 'm';
@@ -136,14 +145,15 @@ Picture draw_histogram(const FieldAnalysis& field, const char* quantity, const f
         section.name, spread.moments.n, p_words(spread.normal),
         fmt::format("{}{}", length ? what.words : "Cu", length ? " (m)" : ""), bins.width, kBlue, normal);
   };
-  draw_panels(field.sections, common, panel, file);
-  return {fmt::format("How {} differs from picture to picture", what.words), file,
-          "Orange: the normal distribution of the same mean and deviation; p by Anderson and Darling: below "
-          "0.05 the values do not "
-          "scatter like one."};
+  if (!draw_panels(field.sections, common, panel, file)) return std::nullopt;
+  return Picture{
+      fmt::format("How {} differs from picture to picture", what.words), file,
+      "Orange: the normal distribution of the same mean and deviation; p by Anderson and Darling: below "
+      "0.05 the values do not "
+      "scatter like one."};
 }
 
-Picture draw_chi(const FieldAnalysis& field, const fs::path& folder) {
+std::optional<Picture> draw_chi(const FieldAnalysis& field, const fs::path& folder) {
   const fs::path file = folder / "chi.svg";
   ProfileChart chart{"Segregation along the slope",
                      "place along the slope x/L (0 crest, 1 toe)",
@@ -160,11 +170,12 @@ Picture draw_chi(const FieldAnalysis& field, const fs::path& folder) {
   };
   add("chi", "of the gradings", ChartSeries::Kind::ours, 0);
   add("chi_given", "as given in the table", ChartSeries::Kind::measured, 1);
+  if (chart.series.empty()) return std::nullopt;
   draw(chart, file);
-  return {"Segregation along the slope", file, "Mean and standard deviation over the pictures."};
+  return Picture{"Segregation along the slope", file, "Mean and standard deviation over the pictures."};
 }
 
-Picture draw_chi_fit(const FieldAnalysis& field, const fs::path& folder) {
+std::optional<Picture> draw_chi_fit(const FieldAnalysis& field, const fs::path& folder) {
   const fs::path file = folder / "chi_fit.svg";
   // Of the degrees that the table gives, where it gives them.
   const bool given = std::any_of(field.sections.begin(), field.sections.end(),
@@ -188,57 +199,65 @@ Picture draw_chi_fit(const FieldAnalysis& field, const fs::path& folder) {
     blocks += "END\n";
     return fmt::format(
         "set title '{0}: {1:.3f} x, R² {2:.2f}, about the mean {3:.2f}' offset 0,-0.6 font ',11'\n"
-        "set xlabel 'D90 / D15 of the whole slope' offset 0,0.6\nset ylabel 'χ' offset 1.5,0\nset yrange "
+        "set xlabel 'D90 / D15 of the rock as dumped' offset 0,0.6\nset ylabel 'χ' offset 1.5,0\nset yrange "
         "[{4}:{5}]\n"
         "plot 0 with lines lc rgb '#888888', ${0} using 1:2 with points pt 7 ps 0.5 lc rgb '{6}', {1}*x with "
         "lines lw 1.6 lc rgb '{7}'\n",
         section.name, fit.slope, fit.r2, fit.r2_of_mean, low - 0.1, high + 0.1, kBlue, kOrange);
   };
-  draw_panels(field.sections, common, panel, file);
-  return {"Segregation degree against D90 / D15", file,
-          fmt::format("χ {}, with the line through the origin. R² of such a line is about zero; where R² "
-                      "about the mean is below 0, the "
-                      "mean alone says more than the line.",
-                      given ? "as given in the table" : "of the gradings")};
+  if (!draw_panels(field.sections, common, panel, file)) return std::nullopt;
+  return Picture{
+      "Segregation degree against D90 / D15", file,
+      fmt::format("χ {}, with the line through the origin. R² of such a line is about zero; where R² "
+                  "about the mean is below 0, the "
+                  "mean alone says more than the line.",
+                  given ? "as given in the table" : "of the gradings")};
 }
 
-Picture draw_ksat(const FieldAnalysis& field, const fs::path& folder) {
+std::optional<Picture> draw_ksat(const FieldAnalysis& field, const fs::path& folder) {
   const fs::path file = folder / "ksat.svg";
   const std::string of = field.options.sieved ? "_filled" : "";
-  std::string script = chart_terminal(kWidth, 430), plots;
+  std::string data;
   struct Formula {
     const char *name, *words, *colour;
     double shift;
   };
   constexpr Formula formulae[] = {{"ksat_kcm_rel", "Kozeny-Carman", kBlue, -0.012},
                                   {"ksat_taylor_rel", "Taylor", kOrange, 0.012}};
+  bool along = false, over = false;  // there is something to be drawn
   for (const Formula& formula : formulae) {
-    script += fmt::format("${} << END\n", formula.name);
+    data += fmt::format("${} << END\n", formula.name);
     for (const FieldSection& section : field.sections) {
       const Spread s = section.spread(formula.name + of);
-      if (s.moments.n > 0)
-        script += fmt::format("{} {} {} {} {} {}\n", section.x_over_l + formula.shift, s.median, s.low68,
-                              s.high68, s.low95, s.high95);
+      if (s.moments.n == 0) continue;
+      along = true;
+      data += fmt::format("{} {} {} {} {} {}\n", section.x_over_l + formula.shift, s.median, s.low68,
+                          s.high68, s.low95, s.high95);
     }
-    script += fmt::format("END\n$ratio_{} << END\n", formula.name);
+    data += fmt::format("END\n$ratio_{} << END\n", formula.name);
     std::vector<double> ratios =
         ratio_over_pictures(field.sections.back(), field.sections.front(), formula.name);
     std::erase_if(ratios, [](double r) { return !std::isfinite(r); });
     std::sort(ratios.begin(), ratios.end());
+    over = over || !ratios.empty();
     for (std::size_t i = 0; i < ratios.size(); ++i)
-      script += fmt::format("{} {}\n", ratios[i],
-                            (static_cast<double>(i) + 0.5) / static_cast<double>(ratios.size()));
-    script += "END\n";
+      data += fmt::format("{} {}\n", ratios[i],
+                          (static_cast<double>(i) + 0.5) / static_cast<double>(ratios.size()));
+    data += "END\n";
   }
-  script +=
-      "set multiplot layout 1,2 margins 0.08,0.98,0.15,0.9 spacing 0.1\nset logscale y\nset format y "
-      "'%g'\nset grid\n";
+  if (!along) return std::nullopt;
+  std::string script =
+      chart_terminal(over ? kWidth : kWidth / 2, 430) + data +
+      fmt::format(
+          "set multiplot layout 1,{} margins {},0.98,0.15,0.9 spacing 0.1\nset logscale y\nset format y "
+          "'%g'\nset grid\n",
+          over ? 2 : 1, over ? 0.08 : 0.16);
   script += fmt::format(
-      "set title {}\nset xlabel 'x/L along the slope (0 crest, 1 toe)'\nset ylabel 'over that of the whole "
-      "slope'\n"
-      "set xrange [0:1]\nset key top left reverse Left\n",
+      "set title {}\nset xlabel 'x/L along the slope (0 crest, 1 toe)'\nset ylabel 'over that of the rock as "
+      "dumped'\nset xrange [0:1]\nset key top left reverse Left\n",
       gnuplot_quoted(field.options.sieved ? "Conductivity of the sections, with fines"
                                           : "Conductivity of the sections"));
+  std::string plots;
   for (const Formula& f : formulae)
     plots += fmt::format(
         "{0}${1} using 1:3:(0):($4-$3) with vectors nohead lw 3 lc rgb '{2}' notitle, '' using "
@@ -246,21 +265,26 @@ Picture draw_ksat(const FieldAnalysis& field, const fs::path& folder) {
         "vectors nohead lw 1 lc rgb '{2}' notitle, '' using 1:2 with linespoints pt 7 ps 0.6 lc rgb '{2}' "
         "title '{3}'",
         plots.empty() ? "plot 1 with lines lc rgb '#888888' notitle, " : ", ", f.name, f.colour, f.words);
-  script += plots +
-            "\nunset logscale y\nset logscale x\nset format y\nset format x '%g'\nset xrange [*:*]\nset "
-            "yrange [0:1]\n";
-  script += fmt::format(
-      "set title {}\nset xlabel '{} over {}'\nset ylabel 'share of the pictures below'\nset key top left\n",
-      gnuplot_quoted("Toe over crest, picture by picture, as seen"), field.sections.back().name,
-      field.sections.front().name);
-  plots.clear();
-  for (const Formula& f : formulae)
-    plots += fmt::format("{}$ratio_{} using 1:2 with points pt 7 ps 0.5 lc rgb '{}' title '{}'",
-                         plots.empty() ? "plot " : ", ", f.name, f.colour, f.words);
-  run_gnuplot(script + plots + "\nunset multiplot\n", file);
-  return {"Hydraulic conductivity", file,
-          "At equal void ratio. Left: median of the pictures, thick bars hold 68 %, thin ones 95 %. Right: "
-          "every picture."};
+  script += plots + "\n";
+  if (over) {
+    script += fmt::format(
+        "unset logscale y\nset logscale x\nset format y\nset format x '%g'\nset xrange [*:*]\nset yrange "
+        "[0:1]\nset title {}\nset xlabel '{} over {}'\nset ylabel 'share of the pictures below'\nset key top "
+        "left\n",
+        gnuplot_quoted("Toe over crest, picture by picture, as seen"), field.sections.back().name,
+        field.sections.front().name);
+    plots.clear();
+    for (const Formula& f : formulae)
+      plots += fmt::format("{}$ratio_{} using 1:2 with points pt 7 ps 0.5 lc rgb '{}' title '{}'",
+                           plots.empty() ? "plot " : ", ", f.name, f.colour, f.words);
+    script += plots + "\n";
+  }
+  run_gnuplot(script + "unset multiplot\n", file);
+  return Picture{
+      "Hydraulic conductivity", file,
+      fmt::format("At equal void ratio. {}edian of the pictures, thick bars hold 68 %, thin ones 95 "
+                  "%.{}",
+                  over ? "Left: m" : "M", over ? " Right: every picture." : "")};
 }
 
 Picture draw_correction(const FieldAnalysis& field, const fs::path& folder) {
@@ -299,13 +323,14 @@ Picture draw_correction(const FieldAnalysis& field, const fs::path& folder) {
 
 std::vector<Picture> draw_field(const FieldAnalysis& field, const fs::path& folder) {
   std::vector<Picture> pictures{draw_envelopes(field, folder)};
-  for (const char* quantity : kHistogramQuantities)
-    pictures.push_back(draw_histogram(field, quantity, folder));
-  pictures.push_back(draw_chi(field, folder));
-  pictures.push_back(draw_chi_fit(field, folder));
-  if (field.whole.curve(CurveKind::medians, true) != nullptr)
-    pictures.push_back(draw_correction(field, folder));
-  pictures.push_back(draw_ksat(field, folder));
+  const auto add = [&](std::optional<Picture> picture) {
+    if (picture) pictures.push_back(std::move(*picture));
+  };
+  for (const char* quantity : kHistogramQuantities) add(draw_histogram(field, quantity, folder));
+  add(draw_chi(field, folder));
+  add(draw_chi_fit(field, folder));
+  if (field.whole.curve(CurveKind::medians, true) != nullptr) add(draw_correction(field, folder));
+  add(draw_ksat(field, folder));
   return pictures;
 }
 

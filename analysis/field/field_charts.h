@@ -9,7 +9,8 @@
 namespace scree {
 
 /// Envelopes of the passing curves, histograms, segregation degrees and their fit, conductivities, and the
-/// curve with fines; SVG in a folder that is there. Throws std::runtime_error, see run_gnuplot.
+/// curve with fines, as far as pictures tell of them; SVG in a folder that is there. Throws
+/// std::runtime_error, see run_gnuplot.
 std::vector<Picture> draw_field(const FieldAnalysis& field, const std::filesystem::path& folder);
 
 }  // namespace scree

@@ -125,7 +125,7 @@ Number place(const FieldAnalysis& field, const Parts& parts) {
   for (const FieldSection& section : field.sections) {
     const auto* values = values_of(field, parts[1], section.name);
     if (values == nullptr) return std::nullopt;
-    const double here = sample_quantile(*values, 0.5), at = section.x_over_l;
+    const double here = mean_std(*values).mean, at = section.x_over_l;
     if (y < wanted && here >= wanted) return x + (at - x) * (wanted - y) / (here - y);
     x = at, y = here;
   }
@@ -156,13 +156,17 @@ Number passing_std(const FieldAnalysis& field, const Parts& parts) {
 }
 
 // The curve that a name begins with: median, mean, meandiameter, and the same with "filled".
+CurveKind kind_of(const std::string& which) {
+  return which.starts_with("meandiameter") ? CurveKind::mean_diameters
+         : which.starts_with("mean")       ? CurveKind::means
+                                           : CurveKind::medians;
+}
+bool has_fines(const std::string& which) {
+  return which.ends_with("filled");
+}
 const Grading* curve_of(const FieldAnalysis& field, const std::string& which, const std::string& section) {
   const FieldSection* at = field.section(section);
-  if (at == nullptr) return nullptr;
-  const CurveKind kind = which.starts_with("meandiameter") ? CurveKind::mean_diameters
-                         : which.starts_with("mean")       ? CurveKind::means
-                                                           : CurveKind::medians;
-  return at->curve(kind, which.ends_with("filled"));
+  return at == nullptr ? nullptr : at->curve(kind_of(which), has_fines(which));
 }
 
 Number of_curve(const FieldAnalysis& field, const Parts& parts) {
@@ -181,10 +185,11 @@ Number share(const FieldAnalysis& field, const Parts& parts) {
 }
 
 Number conductivity(const FieldAnalysis& field, const Parts& parts) {
-  const Grading *curve = curve_of(field, parts[1], parts[3]), *whole = curve_of(field, parts[1], "whole");
-  if (curve == nullptr || whole == nullptr) return std::nullopt;
-  return parts[2] == "kcm" ? conductivity_ratio_kozeny_carman(pore_material(*curve), pore_material(*whole))
-                           : conductivity_ratio_taylor(pore_material(*curve), pore_material(*whole));
+  const Grading* curve = curve_of(field, parts[1], parts[3]);
+  const auto dumped = field.as_dumped(kind_of(parts[1]), has_fines(parts[1]));
+  if (curve == nullptr || !dumped) return std::nullopt;
+  return parts[2] == "kcm" ? conductivity_ratio_kozeny_carman(pore_material(*curve), pore_material(*dumped))
+                           : conductivity_ratio_taylor(pore_material(*curve), pore_material(*dumped));
 }
 
 const std::vector<Form>& forms() {

@@ -25,7 +25,7 @@ namespace scree {
 ///   medianfilled_D_SECTION, ...                               of that curve with fines
 ///   median_share_LOW_HIGH_SECTION, ...                        share of that curve between diameters (m)
 ///   medianfilled_kcm_SECTION, _taylor_, ...                   conductivity of that curve over that of the
-///   whole
+///                                                             rock as dumped
 std::optional<double> field_number(const FieldAnalysis& field, const std::string& name);
 
 }  // namespace scree

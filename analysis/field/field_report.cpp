@@ -117,22 +117,20 @@ std::string ksat_table(const FieldAnalysis& field) {
         any_size(r.taylor));
   return fmt::format(
              "<h2>Hydraulic conductivity</h2>\n<p>Of the curves that can stand for a section in all pictures "
-             "(medians or means of the shares passing, means of the diameters), "
-             "over that of the whole slope, at equal "
-             "void ratio; and as numbers at a void ratio of {}. The modified Kozeny-Carman formula gives "
-             "cm/s for D10 in cm and the unit weight in "
-             "kN/m³ (C_G 0.1; in SI units 0.01). Taylor's formula has the square of D50; the thesis's ratios "
-             "follow from a power of 1.5, with which "
-             "its constant of 0.004 would need the unit of a root of a length. Both hold for laminar flow in "
-             "soils: for blocks only ratios mean "
-             "something.</p>\n",
+             "(medians or means of the shares passing, means of the diameters), over that of the rock as "
+             "dumped, {}, at equal void ratio; and as numbers at a void ratio of {}. The modified "
+             "Kozeny-Carman formula gives cm/s for D10 in cm and the unit weight in kN/m³ (C_G 0.1; in SI "
+             "units 0.01). Taylor's formula has the square of D50; the thesis's ratios follow from a power "
+             "of "
+             "1.5, with which its constant of 0.004 would need the unit of a root of a length. Both hold for "
+             "laminar flow in soils: for blocks only ratios mean something.</p>\n",
+             field.options.original ? "the original grading given" : "the same curve of the whole slopes",
              number_text(field.options.void_ratio)) +
          table(
              "<th class=\"word\">Section</th><th class=\"word\">Curve</th><th>D10 m</th><th>D50 "
-             "m</th><th>Cu</th><th>Kozeny-Carman over "
-             "whole</th><th>Taylor, D50<sup>1.5</sup>, over whole</th><th>Taylor, D50², over "
-             "whole</th><th>Kozeny-Carman cm/s</th><th>m/s</th>"
-             "<th>Taylor, D50², m/s</th>",
+             "m</th><th>Cu</th><th>Kozeny-Carman over rock as dumped</th><th>Taylor, D50<sup>1.5</sup>, over "
+             "rock as dumped</th><th>Taylor, D50², over rock as dumped</th><th>Kozeny-Carman "
+             "cm/s</th><th>m/s</th><th>Taylor, D50², m/s</th>",
              rows);
 }
 
@@ -179,7 +177,7 @@ std::string printed_table(const std::vector<HeldValue>& printed) {
   std::string rows;
   for (const HeldValue& held : printed) {
     const PrintedValue& p = held.printed;
-    const std::string unit = p.unit == "-" ? "" : " " + p.unit;
+    const std::string unit = p.unit == "-" ? "" : fmt::format(" {}", html_escaped(p.unit));
     rows += fmt::format(
         "<tr><td class=\"word\">{}</td><td>{}{}{}</td><td>{}{}<small>{}</small></td><td class=\"word "
         "{}\">{}</td><td class=\"word\">{}</td></tr>\n",
@@ -201,16 +199,22 @@ std::string printed_table(const std::vector<HeldValue>& printed) {
              rows);
 }
 
+/// Over pictures, as `format` has it; a dash where none has it.
+std::string mean_in_words(const FieldSection& section, const std::string& quantity, const char* format) {
+  const double mean = mean_std(section.values.at(quantity)).mean;
+  return std::isfinite(mean) ? fmt::format(fmt::runtime(format), mean) : "–";
+}
+
 }  // namespace
 
 std::vector<std::string> field_in_words(const FieldAnalysis& field, const std::vector<HeldValue>& printed) {
   std::vector<std::string> lines;
   const FieldSection &crest = field.sections.front(), &toe = field.sections.back();
-  lines.push_back(fmt::format(
-      "{} pictures in {} sections: chi from {:.2f} ({}) to {:.2f} ({}), D50 from {:.3g} to {:.3g} m",
-      field.pictures.size(), field.sections.size(), mean_std(crest.values.at("chi")).mean, crest.name,
-      mean_std(toe.values.at("chi")).mean, toe.name, mean_std(crest.values.at("d50")).mean,
-      mean_std(toe.values.at("d50")).mean));
+  lines.push_back(fmt::format("{} pictures in {} sections: chi from {} ({}) to {} ({}), D50 from {} to {} m",
+                              field.pictures.size(), field.sections.size(),
+                              mean_in_words(crest, "chi", "{:.2f}"), crest.name,
+                              mean_in_words(toe, "chi", "{:.2f}"), toe.name,
+                              mean_in_words(crest, "d50", "{:.3g}"), mean_in_words(toe, "d50", "{:.3g}")));
   for (const auto& [name, words] :
        {std::pair{"ksat_kcm_rel", "Kozeny-Carman"}, std::pair{"ksat_taylor_rel", "Taylor"}}) {
     const Spread s = spread_over(ratio_over_pictures(toe, crest, name));

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "analysis/report/report_text.h"
 #include "sim/io/text_file.h"
 
 namespace scree {
@@ -51,7 +52,7 @@ std::string pictures(const FieldAnalysis& field) {
         any = any || std::isfinite(value);
         row += ',' + number(value);
       }
-      if (any) text += fmt::format("{},{}{}\n", field.pictures[i], section->name, row);
+      if (any) text += fmt::format("{},{}{}\n", csv_field(field.pictures[i]), section->name, row);
     }
   return text;
 }
@@ -111,8 +112,8 @@ std::string given_chi(const FieldAnalysis& field) {
     for (const FieldSection& section : field.sections) {
       const double given = section.values.at("chi_given")[i], ours = section.values.at("chi")[i];
       if (std::isfinite(given) || std::isfinite(ours))
-        text += fmt::format("{},{},{},{},{}\n", field.pictures[i], section.name, number(given), number(ours),
-                            number(ours - given));
+        text += fmt::format("{},{},{},{},{}\n", csv_field(field.pictures[i]), section.name, number(given),
+                            number(ours), number(ours - given));
     }
   return text;
 }
@@ -120,11 +121,11 @@ std::string given_chi(const FieldAnalysis& field) {
 std::string printed_table(const std::vector<HeldValue>& printed) {
   std::string text = "name,what,printed,rounding,ours,low,high,unit,verdict,source\n";
   for (const HeldValue& held : printed)
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", held.printed.name, held.printed.what,
-                        number(held.printed.value), number(held.printed.rounding),
-                        held.ours ? number(*held.ours) : "", held.ours ? number(held.low) : "",
-                        held.ours ? number(held.high) : "", held.printed.unit, verdict_in_words(held.verdict),
-                        held.printed.source);
+    text += fmt::format(
+        "{},{},{},{},{},{},{},{},{},{}\n", csv_field(held.printed.name), csv_field(held.printed.what),
+        number(held.printed.value), number(held.printed.rounding), held.ours ? number(*held.ours) : "",
+        held.ours ? number(held.low) : "", held.ours ? number(held.high) : "", csv_field(held.printed.unit),
+        verdict_in_words(held.verdict), csv_field(held.printed.source));
   return text;
 }
 
@@ -141,16 +142,18 @@ std::vector<ConductivityRow> conductivity_rows(const FieldAnalysis& field) {
   std::vector<ConductivityRow> rows;
   const double e = field.options.void_ratio;
   for (const bool filled : {false, true})
-    for (const CurveKind kind : kCurveKinds)
+    for (const CurveKind kind : kCurveKinds) {
+      const auto dumped = field.as_dumped(kind, filled);
       for (const FieldSection* section : parts_of(field)) {
-        const Grading *curve = section->curve(kind, filled), *whole = field.whole.curve(kind, filled);
-        if (curve == nullptr || whole == nullptr) continue;
-        const PoreMaterial here = pore_material(*curve, e), there = pore_material(*whole, e);
+        const Grading* curve = section->curve(kind, filled);
+        if (curve == nullptr || !dumped) continue;
+        const PoreMaterial here = pore_material(*curve, e), there = pore_material(*dumped, e);
         rows.push_back({section->name, kind, filled, here.d10, here.d50, here.cu,
                         conductivity_kozeny_carman(here), conductivity_taylor(here),
                         conductivity_ratio_kozeny_carman(here, there), conductivity_ratio_taylor(here, there),
                         conductivity_ratio_taylor(here, there, 2)});
       }
+    }
   return rows;
 }
 

@@ -8,7 +8,7 @@
 
 namespace scree {
 
-/// A curve that stands for a section, its conductivity, and that over the whole slope's.
+/// A curve that stands for a section, its conductivity, and that over that of the rock as dumped.
 struct ConductivityRow {
   std::string section;
   CurveKind kind = CurveKind::medians;

@@ -14,11 +14,11 @@ cv::Mat1b disc(int radius) {
 
 using Histogram = std::array<std::int64_t, 256>;
 
-Histogram histogram_of(const cv::Mat1b& grey, const cv::Mat1b& ignore) {
+Histogram histogram_of(const cv::Mat1b& grey, const cv::Mat1b& of) {
   Histogram counts{};
   for (int y = 0; y < grey.rows; ++y)
     for (int x = 0; x < grey.cols; ++x)
-      if (ignore(y, x) == 0) ++counts[grey(y, x)];
+      if (of(y, x) != 0) ++counts[grey(y, x)];
   return counts;
 }
 
@@ -31,8 +31,8 @@ int percentile(const Histogram& counts, double share) {
   return value;
 }
 
-void stretch(cv::Mat1b& grey, const cv::Mat1b& ignore) {
-  const Histogram counts = histogram_of(grey, ignore);
+void stretch(cv::Mat1b& grey, const cv::Mat1b& of) {
+  const Histogram counts = histogram_of(grey, of);
   const double low = percentile(counts, 0.005), high = std::max<double>(percentile(counts, 0.995), low + 1);
   cv::Mat1b table(1, 256);
   for (int value = 0; value < 256; ++value)
@@ -77,16 +77,18 @@ void fill_holes(cv::Mat1b& rock, double largest) {
 
 }  // namespace
 
-Foreground find_rock(const cv::Mat3b& picture, const cv::Mat1b& ignore, const ForegroundSettings& settings) {
+Foreground find_rock(const cv::Mat3b& picture, const cv::Mat1b& ignore, const cv::Mat1b& region,
+                     const ForegroundSettings& settings) {
   Foreground found;
+  const cv::Mat1b telling = region & ~ignore;
   cv::Mat1b denoised;
   cv::cvtColor(picture, denoised, cv::COLOR_BGR2GRAY);
   cv::medianBlur(denoised, denoised, 3);
   cv::GaussianBlur(denoised, found.grey, {3, 3}, 0);
-  stretch(found.grey, ignore);
+  stretch(found.grey, telling);
 
   if (settings.threshold == Threshold::otsu) {
-    found.rock = found.grey > otsu(histogram_of(found.grey, ignore));
+    found.rock = found.grey > otsu(histogram_of(found.grey, telling));
   } else {
     cv::adaptiveThreshold(found.grey, found.rock, 255, cv::ADAPTIVE_THRESH_MEAN_C, cv::THRESH_BINARY,
                           settings.local_window_px | 1, settings.local_offset);

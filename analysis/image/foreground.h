@@ -30,8 +30,9 @@ struct Foreground {
 
 /// Grey values, median filter of 3 x 3 and a slight blur against noise, contrast stretched between the
 /// percentiles 0.5 and 99.5; threshold; opening, closing, filling of holes; edges by Canny (IEEE Trans. PAMI
-/// 8 (1986) 679). `ignore` (255) are pixels that are neither: a scale target. The numbers do not depend on
-/// the number of threads.
-Foreground find_rock(const cv::Mat3b& picture, const cv::Mat1b& ignore, const ForegroundSettings& settings);
+/// 8 (1986) 679). `ignore` (255) are pixels that are neither: a scale target. `region` (255) are those
+/// that say how bright rock is. The numbers do not depend on the number of threads.
+Foreground find_rock(const cv::Mat3b& picture, const cv::Mat1b& ignore, const cv::Mat1b& region,
+                     const ForegroundSettings& settings);
 
 }  // namespace scree

@@ -1,11 +1,15 @@
 #include "analysis/image/image_bias.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
+#include <set>
 
+#include "analysis/report/report_text.h"
 #include "analysis/results/results.h"
 
 namespace scree {
@@ -25,19 +29,23 @@ void match(const CheckedPhoto& photo, SizeModel model, std::vector<KnownGrain>& 
     const int x = static_cast<int>(std::lround(grain.x)), y = static_cast<int>(std::lround(grain.y));
     return x >= 0 && y >= 0 && x < labels.cols && y < labels.rows ? labels(y, x) : 0;
   };
-  for (const VisibleGrain& grain : photo.truth->grains) {
-    const int label = label_at(grain);
+  const std::set<int> cut(photo.found->cut.begin(), photo.found->cut.end());
+  std::vector<const VisibleGrain*> whole;
+  for (const VisibleGrain& grain : photo.truth->grains)
+    if (photo.found->region.has(grain.x, grain.y) && !cut.contains(label_at(grain))) whole.push_back(&grain);
+  for (const VisibleGrain* grain : whole) {
+    const int label = label_at(*grain);
     if (!outline.contains(label)) continue;
     const VisibleGrain*& best = owner[label];
-    if (best == nullptr || grain.visible_area > best->visible_area) best = &grain;
+    if (best == nullptr || grain->visible_area > best->visible_area) best = grain;
   }
-  for (const VisibleGrain& grain : photo.truth->grains) {
-    const int label = label_at(grain);
+  for (const VisibleGrain* grain : whole) {
+    const int label = label_at(*grain);
     const auto found = owner.find(label);
-    const bool detected = found != owner.end() && found->second == &grain;
+    const bool detected = found != owner.end() && found->second == grain;
     known.push_back(
-        {grain.diameter,
-         detected ? outline[label]->size[static_cast<std::size_t>(model)].diameter / grain.diameter : 0});
+        {grain->diameter,
+         detected ? outline[label]->size[static_cast<std::size_t>(model)].diameter / grain->diameter : 0});
   }
   bias.outlines += static_cast<int>(outline.size());
   bias.matched += static_cast<int>(owner.size());
@@ -48,7 +56,11 @@ void match(const CheckedPhoto& photo, SizeModel model, std::vector<KnownGrain>& 
 void fit_detection(const std::vector<KnownGrain>& known, ImageBias& bias) {
   const auto seen =
       std::count_if(known.begin(), known.end(), [](const KnownGrain& g) { return g.ratio > 0; });
-  if (seen == static_cast<std::ptrdiff_t>(known.size()) || seen == 0) return;
+  if (seen == 0) return;
+  if (seen == static_cast<std::ptrdiff_t>(known.size())) {
+    bias.limit = 0;
+    return;
+  }
   const double centre = std::log(bias.reference);
   double a = 0, b = 4;  // logit of the share = a + b (ln d - centre)
   for (int round = 0; round < 200; ++round) {
@@ -76,7 +88,11 @@ void fit_detection(const std::vector<KnownGrain>& known, ImageBias& bias) {
     if (longest < 1e-10) break;
   }
   bias.steepness = std::clamp(b, 1.0, 50.0);
-  bias.limit = b > 0 ? bias.reference * std::exp(-a / b) : 0;
+  const auto [smallest, largest] =
+      std::minmax_element(known.begin(), known.end(),
+                          [](const KnownGrain& p, const KnownGrain& q) { return p.diameter < q.diameter; });
+  const double limit = bias.reference * std::exp(-a / b);
+  if (b > 0 && limit >= smallest->diameter && limit <= largest->diameter) bias.limit = limit;
 }
 
 void fit_size(const std::vector<KnownGrain>& known, ImageBias& bias) {
@@ -134,6 +150,16 @@ ImageBias measure_bias(const std::vector<CheckedPhoto>& photos, SizeModel model)
   return bias;
 }
 
+std::string detection_in_words(const ImageBias& bias) {
+  if (bias.matched == 0) return "no known grain is detected";
+  if (!bias.limit)
+    return "the share detected passes one half nowhere among the known diameters: no limit is told";
+  if (*bias.limit == 0) return "every known grain is detected";
+  return fmt::format("half of the known grains are detected at {} m ({} of D50, steepness {})",
+                     number_text(*bias.limit), number_text(*bias.limit / bias.reference),
+                     number_text(bias.steepness));
+}
+
 namespace {
 
 // Known grains of a region that are to be seen, and the section of each.
@@ -141,24 +167,22 @@ struct KnownGrains {
   std::vector<const VisibleGrain*> grains;
   std::vector<int> section;
 };
-KnownGrains known_grains(const PhotoTruth& truth, const cv::Rect& region_box,
+KnownGrains known_grains(const PhotoTruth& truth, const PhotoRegion& region,
                          const PhotoAnalysisSettings& settings) {
   KnownGrains known;
   for (const VisibleGrain& grain : truth.grains) {
-    if (grain.visible_area < settings.detection_area) continue;
-    const int in = section_of(grain.y, region_box, settings.sections);
-    if (in < 0) continue;
+    if (grain.visible_area < settings.detection_area || !region.has(grain.x, grain.y)) continue;
     known.grains.push_back(&grain);
-    known.section.push_back(in);
+    known.section.push_back(section_of(grain.y, region, settings.sections));
   }
   return known;
 }
 
 }  // namespace
 
-std::vector<ImageGrading> true_gradings(const PhotoTruth& truth, const cv::Rect& region_box,
+std::vector<ImageGrading> true_gradings(const PhotoTruth& truth, const PhotoRegion& region,
                                         const PhotoAnalysisSettings& settings) {
-  const KnownGrains known = known_grains(truth, region_box, settings);
+  const KnownGrains known = known_grains(truth, region, settings);
   std::vector<double> diameters, masses;
   for (const VisibleGrain* grain : known.grains) {
     diameters.push_back(grain->diameter);
@@ -169,7 +193,7 @@ std::vector<ImageGrading> true_gradings(const PhotoTruth& truth, const cv::Rect&
 
 TruthCheck check_against_truth(const PhotoAnalysis& found, const PhotoTruth& truth,
                                const PhotoAnalysisSettings& settings) {
-  const KnownGrains known = known_grains(truth, found.region_box, settings);
+  const KnownGrains known = known_grains(truth, found.region, settings);
   std::vector<double> diameters, masses;
   for (const VisibleGrain* grain : known.grains) {
     // As size_of, without the factors that are the same for all.
@@ -178,7 +202,7 @@ TruthCheck check_against_truth(const PhotoAnalysis& found, const PhotoTruth& tru
     diameters.push_back(sphere ? b * std::sqrt(4 / std::numbers::pi) : b);
     masses.push_back((sphere ? b : grain->visible_a) * b * b);
   }
-  return {true_gradings(truth, found.region_box, settings),
+  return {true_gradings(truth, found.region, settings),
           gradings_of(found.grains, settings.sections, settings.model),
           gradings_of(diameters, masses, known.section, settings.sections), truth.scene_d50};
 }

@@ -1,5 +1,7 @@
 #pragma once
 // What image analysis makes of known grains, as a function of size.
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "analysis/image/photo_analysis.h"
@@ -22,8 +24,10 @@ struct ImageBias {
   std::vector<BiasClass> classes;  ///< a factor of sqrt 2 wide each
   double reference = 0;            ///< D50 of the scene, m
   /// Share detected = 1 / (1 + (limit / d)^steepness), greatest likelihood; limit 0 m: every grain is
-  /// detected. Steepness is kept within 1 to 50.
-  double limit = 0, steepness = 6;
+  /// detected; none: no known grain is, or it lies beyond the known diameters. Steepness is kept within 1
+  /// to 50.
+  std::optional<double> limit;
+  double steepness = 6;
   double exponent = 0;  ///< slope of ln(measured / true) over ln d, least squares
   double width = 0;     ///< standard deviation of ln(measured / true) about that line
   int outlines = 0;     ///< found
@@ -40,16 +44,21 @@ struct TruthCheck {
 };
 
 /// Grains found in one picture and its truth. A known grain belongs to the outline that has the middle of
-/// what is seen of it; where an outline has several, the one of which most is seen.
+/// what is seen of it; where an outline has several, the one of which most is seen. Those outside the region
+/// are left out, and those whose outline its border cuts: others count for them.
 struct CheckedPhoto {
   const PhotoAnalysis* found;
   const PhotoTruth* truth;
 };
 ImageBias measure_bias(const std::vector<CheckedPhoto>& photos, SizeModel model);
 
+/// What size has to do with detection, as a sentence without its stop.
+std::string detection_in_words(const ImageBias& bias);
+
 /// Gradings of the grains of which more than the detection limit can be seen, by their true diameters and
-/// masses: the whole region, then its sections.
-std::vector<ImageGrading> true_gradings(const PhotoTruth& truth, const cv::Rect& region_box,
+/// masses: the whole region, then its sections. A grain belongs to the region that has the middle of what is
+/// seen of it.
+std::vector<ImageGrading> true_gradings(const PhotoTruth& truth, const PhotoRegion& region,
                                         const PhotoAnalysisSettings& settings);
 
 TruthCheck check_against_truth(const PhotoAnalysis& found, const PhotoTruth& truth,

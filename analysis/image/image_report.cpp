@@ -71,14 +71,19 @@ Picture bias_chart(const ImageBias& bias, const fs::path& folder) {
     block += fmt::format("{:.6g} {:.6g} {:.6g}\n", std::sqrt(size.low * size.high),
                          static_cast<double>(size.detected) / size.visible, size.ratio);
   const double low = bias.classes.front().low, high = bias.classes.back().high;
-  const std::string fitted =
-      bias.limit > 0 ? fmt::format("1/(1+({:.6g}/x)**{:.6g})", bias.limit, bias.steepness) : "1";
+  const auto curve = [](const std::string& share) {
+    return share + " with lines lw 1.5 lc rgb '#0072b2' title 'detected, fitted', ";
+  };
+  const std::string fitted = !bias.limit ? ""
+                             : *bias.limit > 0
+                                 ? curve(fmt::format("1/(1+({:.6g}/x)**{:.6g})", *bias.limit, bias.steepness))
+                                 : curve("1");
   run_gnuplot(
       chart_terminal(760, 400) +
           fmt::format(
               "set logscale x\nset xlabel 'true diameter (m)'\nset xrange [{:.6g}:{:.6g}]\nset xtics "
               "({})\nset ylabel 'share, ratio'\nset yrange [0:1.5]\nset key top left reverse Left\n{}END\n"
-              "plot {} with lines lw 1.5 lc rgb '#0072b2' title 'detected, fitted', $b using 1:2 with points "
+              "plot {}$b using 1:2 with points "
               "pt 7 ps 0.6 lc rgb '#0072b2' title 'detected share of visible grains', $b using 1:3 with "
               "points "
               "pt 9 ps 0.9 lc rgb '#d55e00' title 'measured over true diameter'\n",
@@ -131,14 +136,13 @@ std::string check_table(const TruthCheck& check) {
 }
 
 std::string bias_words(const ImageBias& bias) {
+  std::string half = detection_in_words(bias);
+  half[0] = static_cast<char>(std::toupper(half[0]));
   return fmt::format(
-      "<p>Of {} outlines {} belong to a known grain. Half of the visible grains are detected at {} m ({} of "
-      "D50, steepness "
-      "{}). The ratio of measured to true diameter grows with size to the power {}; about that, ln d "
-      "scatters by {}. In this "
-      "form the effects detection_limit, image_blur and image_shape_bias take it: effects.yaml.</p>\n",
-      bias.outlines, bias.matched, number_text(bias.limit), number_text(bias.limit / bias.reference),
-      number_text(bias.steepness), decimals_text(bias.exponent, 3), decimals_text(bias.width, 3));
+      "<p>Of {} outlines {} belong to a known grain. {}. The ratio of measured to true diameter grows with "
+      "size to the power {}; about that, ln d scatters by {}. In this form the effects detection_limit, "
+      "image_blur and image_shape_bias take it: effects.yaml.</p>\n",
+      bias.outlines, bias.matched, half, decimals_text(bias.exponent, 3), decimals_text(bias.width, 3));
 }
 
 }  // namespace
@@ -150,13 +154,13 @@ void write_image_report(const ImageReport& report, const fs::path& folder) {
     const PhotoAnalysis& found = photo.found;
     body += fmt::format(
         "<h2>{}</h2>\n<p class=\"lead\">{} grains of {} cm² and more; D50 {} cm, Cu {}, Cc {}. "
-        "{} cm a pixel{}; {} smaller outlines, {} cut by the frame.</p>\n",
+        "{} cm a pixel{}; {} smaller outlines, {} cut by the border.</p>\n",
         html_escaped(photo.name), count_text(static_cast<double>(found.grains.size())),
         number_text(1e4 * report.settings.detection_area), number_text(100 * photo.gradings[0].d50),
         decimals_text(photo.gradings[0].cu, 1), decimals_text(photo.gradings[0].cc, 2),
-        number_text(100 * found.scale.at(found.region_box.y + found.region_box.height / 2.0)),
+        number_text(100 * found.scale.at(found.region.middle_y())),
         report.settings.m_per_px ? "" : fmt::format(", from {} target(s)", found.targets.size()),
-        count_text(found.below_limit), count_text(found.cut_by_frame));
+        count_text(found.below_limit), count_text(static_cast<double>(found.cut.size())));
     if (!found.notes.empty()) {
       body += "<div class=\"notes\"><ul>";
       for (const std::string& note : found.notes) body += "<li>" + html_escaped(note) + "</li>";
@@ -169,8 +173,8 @@ void write_image_report(const ImageReport& report, const fs::path& folder) {
   }
   body += "<h2>Along the slope</h2>\n" + figure(chi_chart(report, folder));
   if (report.bias)
-    body +=
-        "<h2>Bias against size</h2>\n" + bias_words(*report.bias) + figure(bias_chart(*report.bias, folder));
+    body += "<h2>Bias against size</h2>\n" + bias_words(*report.bias) +
+            (report.bias->classes.empty() ? "" : figure(bias_chart(*report.bias, folder)));
   write_text_file(folder / "report.html",
                   html_page("Gradings from photographs",
                             fmt::format("{} · sizes by the model {}, c/b = {:g}", report.version,

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "analysis/report/report_text.h"
+
 namespace scree {
 namespace {
 
@@ -27,13 +29,6 @@ constexpr const char* kGradingColumns =
     "image,section,d100_cm,d95_cm,d90_cm,d80_cm,d60_cm,d50_cm,d30_cm,d15_cm,d10_cm,d0_cm,cu,cc,chi,grains,"
     "mass_kg,"
     "picture\n";
-
-// A name as a field of CSV.
-std::string field(const std::string& name) {
-  std::string out = "\"";
-  for (const char c : name) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
-}
 
 }  // namespace
 
@@ -66,7 +61,7 @@ std::string gradings_csv(const std::vector<AnalysedPhoto>& photos) {
   for (std::size_t i = 0; i < photos.size(); ++i)
     for (std::size_t k = 0; k < photos[i].gradings.size(); ++k)
       if (photos[i].gradings[k].curve)
-        text += grading_row(i + 1, k, photos[i].gradings[k], field(photos[i].name));
+        text += grading_row(i + 1, k, photos[i].gradings[k], csv_field(photos[i].name));
   return text;
 }
 
@@ -77,8 +72,8 @@ std::string models_csv(const std::vector<AnalysedPhoto>& photos, int sections) {
       const std::vector<ImageGrading> gradings = gradings_of(photos[i].found.grains, sections, model);
       for (std::size_t k = 0; k < gradings.size(); ++k)
         if (gradings[k].curve)
-          text +=
-              fmt::format("{},{}", name_of(model), grading_row(i + 1, k, gradings[k], field(photos[i].name)));
+          text += fmt::format("{},{}", name_of(model),
+                              grading_row(i + 1, k, gradings[k], csv_field(photos[i].name)));
     }
   return text;
 }

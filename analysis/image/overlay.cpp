@@ -27,7 +27,7 @@ cv::Mat3b overlay(const cv::Mat3b& picture, const PhotoAnalysis& found, int sect
       if (here != label_at(x + 1, y) || here != label_at(x, y + 1)) out(y, x) = {0, 230, 255};
     }
   const int thick = std::max(1, longest_side / 900);
-  const cv::Rect& box = found.region_box;
+  const cv::Rect& box = found.region.box();
   for (int k = 0; k <= sections; ++k) {
     const int y = static_cast<int>((box.y + static_cast<double>(box.height) * k / sections) * shrink);
     const int left = static_cast<int>(box.x * shrink), right = static_cast<int>(box.br().x * shrink);

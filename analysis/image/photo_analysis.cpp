@@ -10,26 +10,26 @@
 namespace scree {
 namespace {
 
-// Boxes around all labels, in one go.
-std::vector<cv::Rect> boxes_of(const Labels& labels) {
-  struct Span {
-    int left = 1 << 30, top = 1 << 30, right = -1, bottom = -1;
-  };
-  std::vector<Span> spans(labels.count + 1);
+// Where a label is.
+struct Outline {
+  cv::Rect box;
+  bool within = false, beyond = false;  // the region, in part at least
+};
+
+// Of all labels, in one go.
+std::vector<Outline> outlines_of(const Labels& labels, const PhotoRegion& region) {
+  std::vector<Outline> outlines(labels.count + 1);
+  std::vector<cv::Point> low(outlines.size(), {labels.of.cols, labels.of.rows}),
+      high(outlines.size(), {-1, -1});
   for (int y = 0; y < labels.of.rows; ++y)
     for (int x = 0; x < labels.of.cols; ++x)
       if (const int label = labels.of(y, x); label > 0) {
-        Span& span = spans[label];
-        span.left = std::min(span.left, x);
-        span.right = std::max(span.right, x);
-        span.top = std::min(span.top, y);
-        span.bottom = std::max(span.bottom, y);
+        low[label] = {std::min(low[label].x, x), std::min(low[label].y, y)};
+        high[label] = {std::max(high[label].x, x), std::max(high[label].y, y)};
+        (region.mask()(y, x) != 0 ? outlines[label].within : outlines[label].beyond) = true;
       }
-  std::vector<cv::Rect> boxes(spans.size());
-  for (std::size_t i = 1; i < spans.size(); ++i)
-    boxes[i] = {spans[i].left, spans[i].top, spans[i].right - spans[i].left + 1,
-                spans[i].bottom - spans[i].top + 1};
-  return boxes;
+  for (std::size_t i = 1; i < outlines.size(); ++i) outlines[i].box = {low[i], high[i] + cv::Point(1, 1)};
+  return outlines;
 }
 
 ImageScale scale_for(const cv::Mat3b& picture, const PhotoAnalysisSettings& settings, PhotoAnalysis& out) {
@@ -56,30 +56,24 @@ ImageScale scale_for(const cv::Mat3b& picture, const PhotoAnalysisSettings& sett
   return scale;
 }
 
-cv::Rect box_of_region(const cv::Mat3b& picture, const std::vector<cv::Point>& region,
-                       std::vector<std::string>& notes) {
-  const cv::Rect frame(0, 0, picture.cols, picture.rows);
-  if (region.empty()) return frame;
-  cv::Rect whole = cv::boundingRect(region);  // reaches one beyond the last corner
-  const cv::Rect box = whole & frame;
-  if (whole.x < 0 || whole.y < 0 || whole.x + whole.width > frame.width + 1 ||
-      whole.y + whole.height > frame.height + 1)
+PhotoRegion region_of(const cv::Mat3b& picture, const std::vector<cv::Point>& polygon,
+                      std::vector<std::string>& notes) {
+  PhotoRegion region(picture.size(), polygon);
+  if (polygon.empty()) return region;
+  const cv::Rect whole = cv::boundingRect(polygon);  // reaches one beyond the last corner
+  if (whole.x < 0 || whole.y < 0 || whole.br().x > picture.cols + 1 || whole.br().y > picture.rows + 1)
     notes.push_back(
         fmt::format("the region reaches beyond the picture of {} x {} pixels; sections are those of the part "
                     "within",
                     picture.cols, picture.rows));
-  if (box.width < 10 || box.height < 10)
-    throw std::runtime_error(fmt::format("the region has {} x {} pixels within the picture of {} x {}",
-                                         box.width, box.height, picture.cols, picture.rows));
-  return box;
+  return region;
 }
 
 }  // namespace
 
-int section_of(double y, const cv::Rect& box, int sections) {
-  const double down = (y - box.y) / box.height;
-  if (!(down >= 0 && down <= 1)) return -1;
-  return std::min(static_cast<int>(down * sections), sections - 1);
+int section_of(double y, const PhotoRegion& region, int sections) {
+  const double down = (y - region.box().y) / region.box().height;
+  return std::clamp(static_cast<int>(down * sections), 0, sections - 1);
 }
 
 PhotoAnalysis analyse_photo(const cv::Mat3b& picture, const PhotoAnalysisSettings& settings) {
@@ -87,27 +81,25 @@ PhotoAnalysis analyse_photo(const cv::Mat3b& picture, const PhotoAnalysisSetting
   cv::Mat1b ignore;
   out.targets = find_targets(picture, ignore);
   out.scale = scale_for(picture, settings, out);
-  out.region_box = box_of_region(picture, settings.region, out.notes);
-  cv::Mat1b region(picture.size(), static_cast<uchar>(settings.region.empty() ? 255 : 0));
-  if (!settings.region.empty()) cv::fillPoly(region, std::vector{settings.region}, 255);
-  // What lies outside says nothing of how bright rock is.
-  ignore.setTo(255, region == 0);
-
-  const double middle = out.scale.at(out.region_box.y + out.region_box.height / 2.0);
+  out.region = region_of(picture, settings.region, out.notes);
+  const cv::Mat1b& region = out.region.mask();
+  const double middle = out.scale.at(out.region.middle_y());
   ForegroundSettings foreground;
   foreground.threshold = settings.threshold;
   foreground.edges = settings.edges;
   foreground.local_window_px = settings.local_window_px;
   foreground.largest_hole_px = settings.detection_area / (middle * middle);
-  const Foreground found = find_rock(picture, ignore, foreground);
-  out.rock_share = static_cast<double>(cv::countNonZero(found.rock)) / std::max(1, cv::countNonZero(region));
+  const Foreground found = find_rock(picture, ignore, region, foreground);
+  out.rock_share =
+      static_cast<double>(cv::countNonZero(found.rock & region)) / std::max(1, cv::countNonZero(region));
   out.labels = split_grains(found.rock, found.edges, settings.neck);
   if (settings.border_reach > 0)
     out.labels = settle_borders(out.labels, found.grey, ignore, settings.border_reach);
 
-  const std::vector<cv::Rect> boxes = boxes_of(out.labels);
+  const std::vector<Outline> outlines = outlines_of(out.labels, out.region);
   for (int label = 1; label <= out.labels.count; ++label) {
-    const cv::Rect& box = boxes[label];
+    if (!outlines[label].within) continue;
+    const cv::Rect& box = outlines[label].box;
     const double m_per_px = out.scale.at(box.y + box.height / 2.0);
     if (box.area() * m_per_px * m_per_px < settings.detection_area) {
       ++out.below_limit;
@@ -123,17 +115,14 @@ PhotoAnalysis analyse_photo(const cv::Mat3b& picture, const PhotoAnalysisSetting
       ++out.below_limit;
       continue;
     }
-    if (box.x == 0 || box.y == 0 || box.br().x == picture.cols || box.br().y == picture.rows) {
-      ++out.cut_by_frame;
+    if (outlines[label].beyond || box.x == 0 || box.y == 0 || box.br().x == picture.cols ||
+        box.br().y == picture.rows) {
+      out.cut.push_back(label);
       continue;
     }
-    grain.section = section_of(grain.shape.y, out.region_box, settings.sections);
-    if (grain.section < 0) {
-      ++out.outside;
-      continue;
-    }
-    grain.weight = static_cast<double>(picture.cols) * picture.rows /
-                   (static_cast<double>(picture.cols - box.width) * (picture.rows - box.height));
+    grain.section = section_of(grain.shape.y, out.region, settings.sections);
+    grain.weight = out.region.weight({box.size(), grain.shape.feret_max, grain.shape.feret_min},
+                                     settings.rock_within_frame);
     for (std::size_t i = 0; i < grain.size.size(); ++i)
       grain.size[i] = size_of(grain.shape, m_per_px, kSizeModels[i], settings.shape_factor, settings.density);
     out.grains.push_back(grain);
@@ -141,8 +130,8 @@ PhotoAnalysis analyse_photo(const cv::Mat3b& picture, const PhotoAnalysisSetting
   if (out.grains.empty())
     throw std::runtime_error(
         fmt::format("no grain above the detection limit of {:.3g} cm2 is found ({} outlines below it, {} cut "
-                    "by the frame)",
-                    1e4 * settings.detection_area, out.below_limit, out.cut_by_frame));
+                    "by the border)",
+                    1e4 * settings.detection_area, out.below_limit, out.cut.size()));
   const double limit_px = std::sqrt(settings.detection_area) / out.scale.at(picture.rows / 2.0);
   if (limit_px < 3)
     out.notes.push_back(

@@ -8,6 +8,7 @@
 #include "analysis/image/foreground.h"
 #include "analysis/image/grain_size.h"
 #include "analysis/image/grain_split.h"
+#include "analysis/image/photo_region.h"
 #include "analysis/image/scale_target.h"
 #include "analysis/pile/passing_curve.h"
 
@@ -18,6 +19,7 @@ struct PhotoAnalysisSettings {
   double target_diameter = 0.5;    ///< m, of the magenta discs
   int sections = 6;                ///< equal parts of the region from its top, S1, to its foot
   std::vector<cv::Point> region;   ///< polygon, px; empty: the whole picture
+  bool rock_within_frame = false;  ///< the frame cuts no grain: a virtual photograph
   double detection_area = 25e-4;   ///< m2: smaller outlines are not counted
   SizeModel model = SizeModel::ellipsoid;
   double shape_factor = kShapeFactor;
@@ -36,10 +38,7 @@ struct ImageGrain {
   GrainShape shape;  ///< px; x and y in the whole picture
   double m_per_px = 0;
   std::array<GrainSize, std::size(kSizeModels)> size;  ///< as kSizeModels
-  /// Grains that the picture's frame cuts are left out; a large one is cut more often, so those that are
-  /// whole count for 1 / (share of places where one of its height and width is whole) (Miles, Adv. Appl.
-  /// Probab. 6 (1974) 243).
-  double weight = 1;
+  double weight = 1;  ///< for those that the border cut, see PhotoRegion::weight
 };
 
 /// Grading of a section, or of the whole region.
@@ -57,15 +56,18 @@ struct PhotoAnalysis {
   ImageScale scale;
   std::vector<ScaleTarget> targets;
   std::vector<ImageGrain> grains;
-  int below_limit = 0, cut_by_frame = 0, outside = 0;  ///< outlines that are not counted
-  double rock_share = 0;                               ///< of the region's area
-  Labels labels;
-  cv::Rect region_box;
+  int below_limit = 0;  ///< outlines that are too small to be counted
+  std::vector<int>
+      cut;  ///< labels of those that are not counted as the frame or the region's border cuts them
+  double rock_share = 0;  ///< of the region's area
+  Labels labels;          ///< of the whole picture
+  PhotoRegion region;
   std::vector<std::string> notes;  ///< what a reader must know
 };
 
-/// Throws std::runtime_error that says what is wrong: no target and no scale, a region outside the picture,
-/// no grain above the detection limit.
+/// Grains are looked for in the whole picture, so that those are known which reach over the region's border;
+/// how bright rock is, the region alone says. Throws std::runtime_error that says what is wrong: no target
+/// and no scale, a region outside the picture, no grain above the detection limit.
 PhotoAnalysis analyse_photo(const cv::Mat3b& picture, const PhotoAnalysisSettings& settings);
 
 /// The whole region first, then its sections.
@@ -75,7 +77,7 @@ std::vector<ImageGrading> gradings_of(const std::vector<ImageGrain>& grains, int
 std::vector<ImageGrading> gradings_of(const std::vector<double>& diameters, const std::vector<double>& masses,
                                       const std::vector<int>& section, int sections);
 
-/// Section of a height in the picture (px), 0 to sections - 1; -1 outside.
-int section_of(double y, const cv::Rect& region_box, int sections);
+/// Section of a height within the region (px), 0 to sections - 1.
+int section_of(double y, const PhotoRegion& region, int sections);
 
 }  // namespace scree

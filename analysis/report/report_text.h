@@ -11,6 +11,9 @@ namespace scree {
 /// Text that HTML shows as it stands.
 std::string html_escaped(std::string_view text);
 
+/// Text as a field of CSV, in quotation marks (RFC 4180).
+std::string csv_field(std::string_view text);
+
 /// Bytes in base64 (RFC 4648), for pictures inside the page.
 std::string base64(std::string_view bytes);
 

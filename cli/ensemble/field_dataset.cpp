@@ -33,7 +33,8 @@ std::vector<Column> columns_of(const FieldAnalysis& field, const FieldDatasetReq
       throw std::invalid_argument(
           fmt::format("--observables {}: pictures give chi, d10_m ... d95_m, d10_rel ... d95_rel", name));
     for (const FieldSection& section : field.sections) {
-      Column column{fmt::format("{}_{}", name, section.name), section.values.at(quantity), {}};
+      Column column{
+          fmt::format("{}_{}{}", name, section.name, request.sections.of), section.values.at(quantity), {}};
       column.moments = mean_std(column.values);
       if (column.moments.n > 1 && column.moments.std > 0) columns.push_back(std::move(column));
     }
@@ -68,7 +69,7 @@ std::vector<std::string> write_field_dataset(const FieldAnalysis& field, const F
   DatasetDraft draft;
   draft.title = fmt::format("Slope in {} pictures", field.pictures.size());
   draft.source = "scree field " + request.source;
-  DatasetDraft::Experiment experiment{"slope", request.scenario, request.overrides, {}};
+  DatasetDraft::Experiment experiment{"slope", request.scenario, request.sections.overrides, {}};
   for (const Column& column : columns) experiment.observables[column.name] = column.moments;
   draft.experiments.push_back(std::move(experiment));
   if (const auto correlation = correlations(columns, field.pictures.size())) {

@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "analysis/field/field_analysis.h"
+#include "cli/ensemble/output_scope.h"
 
 namespace scree {
 
 struct FieldDatasetRequest {
   std::filesystem::path scenario;        ///< that simulates the slope
-  std::vector<std::string> overrides;    ///< of it, "key=value"
+  MeasuredSections sections;             ///< in its outputs
   std::string source;                    ///< where the numbers come from
   std::vector<std::string> observables;  ///< chi, d50_m, d50_rel ...; empty: chi
 };

@@ -1,10 +1,22 @@
 #include "cli/ensemble/output_scope.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace scree {
 
 OutputScope output_scope(const Scenario& scenario) {
   return {std::string(experiment_type(scenario)), scenario.output.sections, scenario.output.further_sections,
           scenario.output.after_dumps, false};
+}
+
+MeasuredSections measured_sections(const Scenario& scenario, int sections) {
+  const std::vector<int>& further = scenario.output.further_sections;
+  if (scenario.output.sections == sections) return {};
+  if (std::find(further.begin(), further.end(), sections) != further.end())
+    return {{}, fmt::format("of{}", sections)};
+  return {{fmt::format("output.sections={}", sections)}, {}};
 }
 
 std::string why_not_given(const Scenario& scenario, const std::string& output) {

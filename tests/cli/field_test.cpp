@@ -12,6 +12,7 @@
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 namespace {
 
@@ -70,6 +71,60 @@ TEST_F(Field, ReportTablesAndDataset) {
                               "/scenarios/quick_dump.yaml --observables bogus --force --out " + out);
   EXPECT_EQ(refused.code, 2) << refused.text;
   EXPECT_EQ(call("validate " + out + "/dataset/dataset.yaml").code, 0);
+}
+
+// Sections of the pictures are held against sections of a pile that is cut alike, whatever the scenario says.
+TEST_F(Field, ADatasetComparesSectionsOfTheSameCut) {
+  const auto dataset = [&](const std::string& name, const std::string& output) {
+    const std::string scenario =
+        write(name + ".yaml", "extends: " + source + "/scenarios/quick_dump.yaml\noutput: " + output + "\n");
+    // A name behind --observables is not one of them.
+    const Called called = call("field --scenario " + scenario + " --out " + (folder / name).string() +
+                               " --observables chi,d50_m " + table());
+    EXPECT_EQ(called.code, 0) << called.text;
+    return slurp(folder / name / "dataset/dataset.yaml") + slurp(folder / name / "dataset/observables.csv");
+  };
+  EXPECT_THAT(dataset("own", "{sections: 2}"), AllOf(HasSubstr("chi_S2,"), Not(HasSubstr("set:"))));
+  EXPECT_THAT(dataset("further", "{sections: 6, further_sections: [2]}"),
+              AllOf(HasSubstr("chi_S2of2,"), HasSubstr("d50_m_S1of2,"), Not(HasSubstr("set:"))));
+  EXPECT_THAT(dataset("other", "{sections: 6, further_sections: [3]}"),
+              AllOf(HasSubstr("chi_S2,"), HasSubstr("output.sections: 2")));
+}
+
+// What no picture tells is left out.
+TEST_F(Field, SectionsWithGapsHaveAReport) {
+  const std::string head = "image,section,d10_m,d50_m,d90_m\n";
+  for (const auto& [name, rows] : std::vector<std::pair<std::string, std::string>>{
+           // No picture has both sections; none has a whole slope and a section.
+           {"apart", "1,whole,1,2,3\n1,S1,1,1.5,2\n2,whole,1,2,4\n2,S2,1,3,5\n"},
+           {"without", "1,whole,1,2,3\n2,S1,1,1.5,2\n2,S3,1,3,5\n"}}) {
+    const fs::path out = folder / name;
+    const Called called = call("field " + write(name + ".csv", head + rows) + " --out " + out.string());
+    EXPECT_EQ(called.code, 0) << name << called.text;
+    EXPECT_THAT(called.text + slurp(out / "report.html"), Not(HasSubstr("nan")));
+  }
+  EXPECT_THAT(slurp(folder / "without/report.html"), HasSubstr("chi from – (S1) to – (S3)"));
+  EXPECT_TRUE(fs::exists(folder / "apart/pictures/ksat.svg"));
+  EXPECT_FALSE(fs::exists(folder / "without/pictures/ksat.svg"));
+}
+
+TEST_F(Field, NamesAndUnitsStandAsTheyAre) {
+  const std::string rows =
+      write("names.csv",
+            "image;section;d10_m;d50_m;d90_m;chi\na,b;whole;1;2;3;\na,b;S1;1;1.5;2;-0.2\n"
+            "a,b;S2;1;3;5;0.3\n");
+  const std::string printed = write("printed.csv",
+                                    "name;what;value;unit;relation;rounding;source\n"
+                                    "d50_mean_S1;mean, of <b>S1</b>;1.5;<i>m</i>;eq;0.05;page 3, line 1\n");
+  const fs::path out = folder / "out";
+  const Called called = call("field " + rows + " --printed " + printed + " --out " + out.string());
+  ASSERT_EQ(called.code, 0) << called.text;
+  EXPECT_THAT(slurp(out / "pictures.csv"), HasSubstr("\n\"a,b\",S1,"));
+  EXPECT_THAT(slurp(out / "chi_given.csv"), HasSubstr("\n\"a,b\",S2,0.3,"));
+  EXPECT_THAT(slurp(out / "printed.csv"),
+              AllOf(HasSubstr("\"mean, of <b>S1</b>\",1.5,"), HasSubstr("\"page 3, line 1\"")));
+  EXPECT_THAT(slurp(out / "report.html"),
+              AllOf(Not(HasSubstr("<i>m</i>")), HasSubstr("&lt;i&gt;m&lt;/i&gt;")));
 }
 
 TEST_F(Field, RefusesWithOneLine) {

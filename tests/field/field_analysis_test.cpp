@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "analysis/field/field_numbers.h"
+#include "analysis/field/field_tables.h"
 #include "analysis/field/printed_values.h"
 #include "scree_version.h"
 
@@ -104,6 +105,49 @@ TEST(FieldAnalysis, OneOriginalForAllPictures) {
   EXPECT_NEAR(field.sections[0].values.at("chi")[0], segregation_degree(curve(0.1, 0.5), *options.original),
               1e-12);
   EXPECT_NE(field.whole.curve(CurveKind::medians, false), nullptr);
+}
+
+// The original grading goes before the whole slopes, in every number.
+TEST(FieldAnalysis, ConductivityHasOneReference) {
+  SlopeGradings gradings = two_pictures();
+  gradings.pictures.resize(1);
+  FieldOptions options;
+  options.original = curve(0.05, 1.2);
+  options.sieved = curve(0.001, 0.25);
+  options.limit = 0.25;
+  const FieldAnalysis field = analyse_field(gradings, options);
+  int looked_at = 0;
+  for (const ConductivityRow& row : conductivity_rows(field)) {
+    if (row.section == "whole" || row.kind != CurveKind::mean_diameters) continue;
+    // With one picture its curve is the one that stands for the section.
+    const FieldSection& section = *field.section(row.section);
+    const std::string filled = row.filled ? "_filled" : "";
+    EXPECT_NEAR(row.kozeny_carman_rel, section.values.at("ksat_kcm_rel" + filled)[0], 1e-9);
+    EXPECT_NEAR(row.taylor_rel, section.values.at("ksat_taylor_rel" + filled)[0], 1e-9);
+    EXPECT_NEAR(*field_number(
+                    field, "meandiameter" + std::string(row.filled ? "filled" : "") + "_kcm_" + row.section),
+                row.kozeny_carman_rel, 1e-12);
+    ++looked_at;
+  }
+  EXPECT_EQ(looked_at, 4);
+}
+
+TEST(FieldNumbers, PlacesAreThoseOfMeans) {
+  // Two pictures of three have chi below 0 in S2, the third far above: the mean is above, the median below.
+  SlopeGradings gradings;
+  gradings.sections = 2;
+  for (const double finest : {0.09, 0.09, 0.8}) {
+    SlopeGradings::Picture picture;
+    picture.curves = {curve(0.1, 1), curve(0.1, 0.5), curve(finest, 1)};
+    picture.given_chi.assign(3, NAN);
+    gradings.pictures.push_back(picture);
+  }
+  const FieldAnalysis field = analyse_field(gradings, {});
+  const double crest = mean_std(field.sections[0].values.at("chi")).mean,
+               toe = mean_std(field.sections[1].values.at("chi")).mean;
+  ASSERT_GT(toe, 0);
+  ASSERT_LT(field.sections[1].spread("chi").median, 0);
+  EXPECT_NEAR(field_number(field, "chi_place_0").value_or(-1), 0.25 + 0.5 * crest / (crest - toe), 1e-12);
 }
 
 TEST(FieldNumbers, ByName) {

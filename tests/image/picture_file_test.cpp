@@ -17,7 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace std::string_literals;
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 class PictureFile : public testing::Test {
  protected:
@@ -143,6 +145,28 @@ TEST_F(PictureFile, ARefusedDatasetLeavesNothing) {
   EXPECT_FALSE(fs::exists(out)) << called.text;
 }
 
+// Thirds of a slope are held against thirds of the pile, not against the upper half of its six sections.
+TEST_F(PictureFile, ADatasetComparesSectionsOfTheSameCut) {
+  write_picture(folder_ / "a.png", grey_with_discs());
+  cv::Mat3b other = grey_with_discs();
+  cv::circle(other, {300, 60}, 25, cv::Scalar(190, 190, 190), cv::FILLED);
+  cv::circle(other, {60, 260}, 30, cv::Scalar(190, 190, 190), cv::FILLED);
+  write_picture(folder_ / "b.png", other);
+  const auto dataset = [&](const std::string& scenario, const std::string& sections) {
+    const fs::path out = folder_ / scenario;
+    const Called called =
+        call("image " + (folder_ / "a.png").string() + " " + (folder_ / "b.png").string() +
+             " --scale 1cm/px --sections " + sections + " --scenario " SCREE_TEST_ASSETS "/../scenarios/" +
+             scenario + " --out " + out.string());
+    EXPECT_EQ(called.code, 0) << called.text;
+    return slurp(out / "dataset.yaml") + slurp(out / "observables.csv");
+  };
+  // Three sections and no others; six, and three beside them.
+  EXPECT_THAT(dataset("small_dump.yaml", "2"), AllOf(HasSubstr("output.sections: 2"), HasSubstr("chi_S2,")));
+  EXPECT_THAT(dataset("canadian_malartic_10m.yaml", "3"),
+              AllOf(Not(HasSubstr("output.sections")), HasSubstr("chi_S3of3,"), HasSubstr("d50_m_S1of3,")));
+}
+
 TEST_F(PictureFile, ARegionBeyondThePictureIsTold) {
   write_picture(folder_ / "discs.png", grey_with_discs());
   const std::string command =
@@ -151,7 +175,7 @@ TEST_F(PictureFile, ARegionBeyondThePictureIsTold) {
   const Called beyond = call(command + (folder_ / "a").string() + " --region '0,0 99999,99999'"),
                within = call(command + (folder_ / "b").string() + " --region '0,0 60,60'");
   EXPECT_THAT(beyond.text, testing::HasSubstr(told));
-  EXPECT_THAT(within.text, testing::Not(testing::HasSubstr(told)));
+  EXPECT_THAT(within.text, Not(HasSubstr(told)));
 }
 
 TEST_F(PictureFile, ExifTurnsAPhotographUpright) {
@@ -195,6 +219,26 @@ TEST_F(PictureFile, RenderAndImageWorkTogether) {
   EXPECT_THAT(seen.text, HasSubstr("known rock: D50"));
   EXPECT_THAT(slurp(folder_ / "out" / "effects.yaml"), HasSubstr("image_blur:"));
   EXPECT_THAT(slurp(folder_ / "out" / "bias.csv"), HasSubstr("detected_share"));
+}
+
+TEST_F(PictureFile, OfNoKnownGrainNoEffectsAreMade) {
+  write_picture(folder_ / "discs.png", grey_with_discs());
+  const fs::path truth = write("truth.csv",
+                               "# m_per_px = 0.01\n# scene_d50_m = 0.3\nid,x_px,y_px,diameter_m,mass_kg,"
+                               "visible_cm2,visible_share,visible_a_m,visible_b_m\n"
+                               "1,390,10,0.3,40,700,1,0.3,0.3\n");
+  const std::string command = "image " + (folder_ / "discs.png").string() + " --scale 1cm/px --truth " +
+                              truth.string() + " --sections 1 --force --out " + (folder_ / "out").string();
+  fs::create_directories(folder_ / "out");
+  write("out/effects.yaml", "of an older analysis\n");
+  // In the picture and not found; outside the region.
+  for (const char* region : {"", " --region '20,20 380,290'"}) {
+    const Called called = call(command + region);
+    EXPECT_EQ(called.code, 0) << called.text;
+    EXPECT_THAT(called.text, HasSubstr("note: no effects.yaml: 0 known grains are detected"));
+    EXPECT_FALSE(fs::exists(folder_ / "out/effects.yaml"));
+    EXPECT_TRUE(fs::exists(folder_ / "out/report.html"));
+  }
 }
 
 TEST(ScaleTarget, IsFoundInSunAndShadowAndNowhereElse) {

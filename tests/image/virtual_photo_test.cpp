@@ -43,12 +43,16 @@ Photo photo_of(GrainLayout layout, double coverage, const Sun& sun, std::uint64_
 PhotoAnalysisSettings for_spheres() {
   PhotoAnalysisSettings settings;
   settings.model = SizeModel::sphere;
+  settings.rock_within_frame = true;
   return settings;
 }
 
 struct Case {
   GrainLayout layout;
-  double coverage, allowed;  // error of D50
+  double coverage;
+  // Error of D50: the bars that are asked of the analysis, docs/image.md. One picture in twelve misses them
+  // (bench/results/photographs.csv: 15 of 180 with the sun at 80, 60 and 40 degrees).
+  double allowed;
 };
 
 class Chain : public testing::TestWithParam<Case> {};
@@ -160,8 +164,10 @@ TEST(ImageBias, RecoversALimitAndASlopePutIn) {
     found.grains.push_back(grain);
   }
   found.labels.count = n;
+  found.region = PhotoRegion(found.labels.of.size(), {});
   const ImageBias bias = measure_bias({{&found, &truth}}, SizeModel::sphere);
-  EXPECT_NEAR(bias.limit, 0.2, 0.01);
+  ASSERT_TRUE(bias.limit);
+  EXPECT_NEAR(*bias.limit, 0.2, 0.01);
   EXPECT_NEAR(bias.steepness, 6, 0.6);
   EXPECT_NEAR(bias.exponent, 0.1, 1e-6);
   EXPECT_NEAR(bias.width, 0, 1e-6);
@@ -183,9 +189,67 @@ TEST(ImageBias, OfPerfectDetectionHasNoLimit) {
     found.grains.push_back(grain);
   }
   found.labels.count = 20;
+  found.region = PhotoRegion(found.labels.of.size(), {});
   const ImageBias bias = measure_bias({{&found, &truth}}, SizeModel::sphere);
   EXPECT_EQ(bias.limit, 0);
   EXPECT_NEAR(bias.exponent, 0, 1e-9);
+}
+
+// Twenty known grains of 0.1 to 1.05 m side by side, of which some are found as they are.
+ImageBias bias_where(bool (*detected)(int grain), const std::vector<cv::Point>& region = {}) {
+  PhotoAnalysis found;
+  PhotoTruth truth;
+  truth.m_per_px = 0.01;
+  truth.scene_d50 = 0.5;
+  found.labels.of = cv::Mat1i(10, 20, 0);
+  found.labels.count = 20;
+  found.region = PhotoRegion(found.labels.of.size(), region);
+  for (int i = 0; i < 20; ++i) {
+    const double d = 0.1 + 0.05 * i;
+    truth.grains.push_back({i + 1, static_cast<double>(i), 0, d, d, d, 1, d, d});
+    if (!detected(i)) continue;
+    ImageGrain grain;
+    grain.label = found.labels.of(0, i) = i + 1;
+    grain.size[0] = {d, d};
+    found.grains.push_back(grain);
+  }
+  return measure_bias({{&found, &truth}}, SizeModel::sphere);
+}
+
+TEST(ImageBias, HasNoLimitThatTheKnownGrainsDoNotTell) {
+  // Not a single one, a third of all sizes, large ones less than small ones.
+  EXPECT_FALSE(bias_where([](int) { return false; }).limit);
+  EXPECT_FALSE(bias_where([](int i) { return i % 3 == 0; }).limit);
+  EXPECT_FALSE(bias_where([](int i) { return i < 7; }).limit);
+  const auto step = bias_where([](int i) { return i >= 7; }).limit;  // between 0.40 and 0.45 m
+  ASSERT_TRUE(step);
+  EXPECT_NEAR(*step, 0.425, 0.025);
+}
+
+TEST(ImageBias, IsThatOfTheRegionAlone) {
+  // Every grain of the region is found, and none beyond it, where nobody looked.
+  const ImageBias bias = bias_where([](int i) { return i < 10; }, {{0, 0}, {9, 0}, {9, 9}, {0, 9}});
+  EXPECT_EQ(bias.limit, 0);
+  int visible = 0;
+  for (const BiasClass& size : bias.classes) visible += size.visible;
+  EXPECT_EQ(visible, 10);
+}
+
+TEST(VirtualPhoto, ARegionIsHeldAgainstItsOwnRock) {
+  const Photo photo = photo_of(GrainLayout::apart, 0.35, kSuns[0]);
+  const int width = photo.picture.cols, height = photo.picture.rows;
+  PhotoAnalysisSettings settings = for_spheres();
+  settings.sections = 1;
+  settings.region = {{width / 8, height / 8}, {7 * width / 8, height / 8}, {width / 2, 7 * height / 8}};
+  const PhotoAnalysis found = analyse_photo(photo.picture, settings);
+  const TruthCheck check = check_against_truth(found, photo.truth, settings);
+  EXPECT_LT(check.known[0].grains, 0.5 * static_cast<double>(photo.truth.grains.size()));
+  // Those that the border cuts are not taken for missed ones.
+  const ImageBias bias = measure_bias({{&found, &photo.truth}}, SizeModel::sphere);
+  for (const BiasClass& size : bias.classes) {
+    if (size.low < 0.2) continue;
+    EXPECT_GE(size.detected, 0.9 * size.visible) << size.low;
+  }
 }
 
 TEST(Scene, FollowsItsGradingAndLiesApart) {
@@ -281,7 +345,7 @@ TEST(VirtualPhoto, ShowsTheSegregationAskedFor) {
         const Photo photo =
             render_photo(make_scene(read_grading(SCREE_TEST_ASSETS "/gradings/CM0.csv"), settings), camera);
         const std::vector<double> chi =
-            chi_of(true_gradings(photo.truth, {0, 0, photo.picture.cols, photo.picture.rows}, {}));
+            chi_of(true_gradings(photo.truth, PhotoRegion(photo.picture.size(), {}), {}));
         EXPECT_GT(sign * (chi[5] - chi[0]), 0.2);                    // due: 0.37
         EXPECT_GT(sign * (chi[4] + chi[5] - chi[0] - chi[1]), 0.3);  // due: 0.59
       }
