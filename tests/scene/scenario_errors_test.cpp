@@ -19,9 +19,9 @@ void PrintTo(const BadCase& bad, std::ostream* out) {
 const BadCase kBadCases[] = {
     // clang-format off
     {"UnknownKey", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump}\ntitel: x\n",
-     {"4:1: unknown key 'titel' (did you mean 'title'?); allowed: extends, title, engine, seeds, material, grading, experiment, tools, effects, stop, numerics, output, compare"}},
+     {"4:1: unknown key 'titel' (did you mean 'title'?); allowed: extends, title, engine, seeds, material, grading, grading_from_m, experiment, tools, effects, stop, numerics, output, compare"}},
     {"UnknownKeyFar", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump}\nzzzzzz: x\n",
-     {"4:1: unknown key 'zzzzzz'; allowed: extends, title, engine, seeds, material, grading, experiment, tools, effects, stop, numerics, output, compare"}},
+     {"4:1: unknown key 'zzzzzz'; allowed: extends, title, engine, seeds, material, grading, grading_from_m, experiment, tools, effects, stop, numerics, output, compare"}},
     {"UnitInKeyWrong", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump, bench: {height_cm: 1000}}\n",
      {"3:38: unknown key 'height_cm' in experiment.bench (did you mean 'height_m'?); allowed: height_m, slope_deg, top_length_m, floor_length_m, width_m, base_layer, base_ball_diameter_m, layer_on_top"}},
     {"UnitInKeyMissing", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump, bench: {height: 10}}\n",
