@@ -64,7 +64,7 @@ Picture draw_profiles(const std::vector<StudyOption>& options, const std::filesy
                      true,
                      {}};
   for (std::size_t k = 0; k < options.size(); ++k) {
-    ChartSeries series{options[k].name, ChartSeries::Kind::ours, static_cast<int>(k), {}};
+    ChartSeries series{options[k].name, ChartSeries::Kind::ours, static_cast<int>(k), {}, options[k].name};
     int sections = 0;
     for (const Outputs& seed : options[k].runs.seeds)
       if (const auto found = seed.find("sections"); found != seed.end())

@@ -161,7 +161,7 @@ std::optional<Picture> draw_chi(const FieldAnalysis& field, const fs::path& fold
                      true,
                      {}};
   const auto add = [&](const char* quantity, const char* name, ChartSeries::Kind kind, int colour) {
-    ChartSeries series{name, kind, colour, {}};
+    ChartSeries series{name, kind, colour, {}, name};
     for (const FieldSection& section : field.sections) {
       const MeanStd both = mean_std(section.values.at(quantity));
       if (both.n > 0) series.points.push_back({section.x_over_l, both.mean, both.std});
@@ -301,13 +301,15 @@ Picture draw_correction(const FieldAnalysis& field, const fs::path& folder) {
   block("seen", seen), block("filled", filled), block("sieved", sieved);
   const double low = filled.diameter(0.0), high = filled.max_diameter();
   script += fmt::format(
-      "set logscale x\nset format x '%g'\nset xrange [{:.4g}:{:.4g}]\nset yrange [0:100]\nset xlabel "
+      "set logscale x\nset format x '%g'\nset xrange [{0:.4g}:{1:.4g}]\nset yrange [0:100]\nset xlabel "
       "'diameter (m)'\n"
       "set ylabel 'passing (%)'\nset key top left reverse Left\n"
-      "set arrow 1 from first {:.6g}, graph 0 to first {:.6g}, graph 1 nohead dt 3 lc rgb '#888888'\n",
-      low, high, field.options.limit, field.options.limit);
+      // A curve, not an arrow: gnuplot draws arrows of an SVG solid.
+      "$limit << END\n{2:.6g} 0\n{2:.6g} 100\nEND\n",
+      low, high, field.options.limit);
   script += fmt::format(
-      "plot $sieved using 1:2 with lines lw 1.4 lc rgb '{}' title 'sieved sample', $seen using 1:2 with "
+      "plot $limit using 1:2 with lines lw 1.6 dt 3 lc rgb '#555555' notitle, $sieved using 1:2 with lines "
+      "lw 1.4 lc rgb '{}' title 'sieved sample', $seen using 1:2 with "
       "lines lw 1.6 lc "
       "rgb '{}' title 'as seen, Cu {:.1f}', $filled using 1:2 with lines lw 2 lc rgb '{}' title 'with fines, "
       "Cu {:.1f}'\n",

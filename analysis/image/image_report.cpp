@@ -46,17 +46,20 @@ Picture passing_chart(const AnalysedPhoto& photo, std::size_t number, const fs::
 Picture chi_chart(const ImageReport& report, const fs::path& folder) {
   ProfileChart chart{"", "x/L along the slope", "segregation degree χ", true, {}};
   for (std::size_t i = 0; i < report.photos.size(); ++i) {
-    const auto series = [&](const std::vector<ImageGrading>& gradings, ChartSeries::Kind kind) {
-      ChartSeries out{report.photos[i].name, kind, static_cast<int>(i), {}};
+    const auto series = [&](const std::vector<ImageGrading>& gradings, ChartSeries::Kind kind,
+                            const char* what) {
+      const std::string& name = report.photos[i].name;
+      ChartSeries out{name, kind, static_cast<int>(i), {}, what};
+      if (report.photos.size() > 1) out.label = fmt::format("{}, {}", name, what);
       const double n = static_cast<double>(gradings.size()) - 1;
       for (std::size_t k = 1; k < gradings.size(); ++k)
         if (std::isfinite(gradings[k].chi))
           out.points.push_back({(2.0 * static_cast<double>(k) - 1) / (2 * n), gradings[k].chi});
       return out;
     };
-    chart.series.push_back(series(report.photos[i].gradings, ChartSeries::Kind::measured));
+    chart.series.push_back(series(report.photos[i].gradings, ChartSeries::Kind::measured, "measured"));
     if (i < report.checks.size())
-      chart.series.push_back(series(report.checks[i].known, ChartSeries::Kind::ours));
+      chart.series.push_back(series(report.checks[i].known, ChartSeries::Kind::ours, "known rock"));
   }
   draw(chart, folder / "chi.svg");
   return {"Segregation degree", folder / "chi.svg",

@@ -149,7 +149,7 @@ Picture draw_inside(const Inside& inside, const std::filesystem::path& file) {
   for (const InsideCell& cell : inside.cells)
     if (std::isfinite(cell.chi)) chis.push_back({std::abs(cell.chi), cell.mass});
   const double most = chis.empty() ? 1 : std::max(0.5, 0.5 * std::ceil(2 * mass_quantile(chis, 0.95)));
-  script += canvas.panel(0, "Segregation degree: red is coarser than dumped, blue finer", "chi");
+  script += canvas.panel(0, "Segregation degree: red is coarser than dumped, blue finer", "χ");
   script += kDiverging + fmt::format("set cbrange [{:.6g}:{:.6g}]\nset cbtics 0.5 scale 0.4\n", -most, most);
   script += plot_cells("chi");
 

@@ -18,13 +18,15 @@ namespace {
 constexpr std::array<unsigned, 9> kViridis{0x440154, 0x472d7b, 0x3b528b, 0x2c728e, 0x21918c,
                                            0x28ae80, 0x5ec962, 0xaddc30, 0xfde725};
 
+constexpr unsigned kRockRim = 0x202020, kGroundRim = 0x909090;
+
 /// Where discs lie in a view, and what is drawn first.
 struct Disc {
   double across = 0, up = 0, depth = 0, radius = 0, diameter = 0;  // m; larger depth is farther
 };
 
 struct View {
-  std::vector<Disc> discs;
+  std::vector<Disc> discs, ground;  // ground: fixed balls, under everything else
   std::string across_label, up_label, title;
   std::string under, over;  // gnuplot lines, drawn before and after the discs
   SectionFrame frame;
@@ -46,15 +48,14 @@ SizeRange size_range(const std::vector<Grain>& grains) {
 
 /// Two discs a grain, a dark one under a coloured one, give an outline that never swallows a small grain's
 /// colour.
-std::string disc_rows(std::vector<Disc> discs, const SizeRange& range, double metres_a_pixel) {
+std::string disc_rows(std::vector<Disc> discs, double metres_a_pixel, unsigned rim,
+                      const std::function<unsigned(const Disc&)>& fill) {
   std::sort(discs.begin(), discs.end(), [](const Disc& a, const Disc& b) { return a.depth > b.depth; });
   std::string rows;
   for (const Disc& disc : discs) {
     const double outline = std::min(1.5 * metres_a_pixel, 0.15 * disc.radius);
-    const double share = std::log(disc.diameter / range.low) / std::log(range.high / range.low);
-    rows += fmt::format("{:.5g} {:.5g} {:.5g} {}\n", disc.across, disc.up, disc.radius, 0x202020);
-    rows +=
-        fmt::format("{:.5g} {:.5g} {:.5g} {}\n", disc.across, disc.up, disc.radius - outline, viridis(share));
+    rows += fmt::format("{:.5g} {:.5g} {:.5g} {}\n", disc.across, disc.up, disc.radius, rim);
+    rows += fmt::format("{:.5g} {:.5g} {:.5g} {}\n", disc.across, disc.up, disc.radius - outline, fill(disc));
   }
   return rows;
 }
@@ -73,7 +74,12 @@ std::string script(const View& view, const SizeRange& range) {
   out += fmt::format(
       "set cbrange [{:.6g}:{:.6g}]\nset cbtics ({}) scale 0.4\nset cblabel 'grain diameter (m)'\n", range.low,
       range.high, log_ticks(range.low, range.high));
-  out += "$discs << END\n" + disc_rows(view.discs, range, 1 / pixels_a_metre) + "END\n";
+  const auto by_size = [&](const Disc& disc) {
+    return viridis(std::log(disc.diameter / range.low) / std::log(range.high / range.low));
+  };
+  const auto grey = [](const Disc&) { return kFixedGrey; };
+  out += "$discs << END\n" + disc_rows(view.ground, 1 / pixels_a_metre, kGroundRim, grey) +
+         disc_rows(view.discs, 1 / pixels_a_metre, kRockRim, by_size) + "END\n";
   out += view.under + plot_discs(range.low, view.over);
   return out;
 }
@@ -114,7 +120,7 @@ std::string section_lines(const RunResult& result, const SectionFrame& frame) {
   const double step = result.bench_height / static_cast<double>(table->sections.size());
   for (std::size_t i = 0; i <= table->sections.size(); ++i) {
     const double z = result.bench_height - step * static_cast<double>(i);
-    out += line(frame.left, z, frame.right, z, "back lw 0.5 dt 3 lc rgb '#999999'");
+    out += line(frame.left, z, frame.right, z, "back lw 1.2 dt 3 lc rgb '#606060'");
     if (i < table->sections.size())
       out += fmt::format("set label {} at {:.5g},{:.5g} right offset -0.5,0 tc rgb '#555555'\n",
                          gnuplot_quoted(table->sections[i].name), frame.right, z - step / 2);
@@ -126,7 +132,7 @@ std::string bench_lines(const RunResult& result, const SceneFacts& scene, const 
   const double height = result.bench_height;
   if (height <= 0 || !scene.bench_slope) return "";
   const double toe = height / std::tan(*scene.bench_slope * std::numbers::pi / 180);
-  const char* look = "back lw 1.5 lc rgb '#808080'";
+  const char* look = "front lw 1.5 lc rgb '#404040'";
   return line(frame.left, height, 0, height, look) + line(0, height, toe, 0, look) +
          line(toe, 0, frame.right, 0, look);
 }
@@ -139,6 +145,10 @@ std::string cone_lines(const ReposeAngle& repose, double centre) {
   return line(centre - foot, 0, centre, top, look) + line(centre, top, centre + foot, 0, look);
 }
 
+Disc seen_along_the_crest(const Grain& grain) {
+  return {grain.position.x(), grain.position.z(), grain.position.y(), grain.diameter / 2, grain.diameter};
+}
+
 View cut_view(const RunResult& result, const SceneFacts& scene, const SeedResult& seed, double largest) {
   const std::vector<Grain>& grains = seed.final_state.grains;
   const double depth = ceiling_to(1.5 * largest, largest < 0.3 ? 0.05 : 0.5);
@@ -148,11 +158,17 @@ View cut_view(const RunResult& result, const SceneFacts& scene, const SeedResult
   for (const Grain& grain : grains) {
     moment += grain.mass * grain.position.x();
     mass += grain.mass;
-    if (!in_cut(grain, cut, depth)) continue;
-    view.discs.push_back(
-        {grain.position.x(), grain.position.z(), grain.position.y(), grain.diameter / 2, grain.diameter});
+    if (in_cut(grain, cut, depth)) view.discs.push_back(seen_along_the_crest(grain));
   }
   view.frame = frame_around(view.discs, result.bench_height);
+  for (const Grain& ball : seed.fixed) {
+    const Disc disc = seen_along_the_crest(ball);
+    if (!in_cut(ball, cut, depth) || disc.across + disc.radius < view.frame.left ||
+        disc.across - disc.radius > view.frame.right)
+      continue;
+    view.ground.push_back(disc);
+    view.frame.low = std::min(view.frame.low, disc.up - 1.05 * disc.radius);
+  }
   view.title = fmt::format("Cut at y = {:.2g} m: grains up to {:.2g} m behind it", cut + 0.0, depth);
   view.across_label = result.bench_height > 0 ? "distance from the crest, x (m)" : "x (m)";
   view.up_label = "height, z (m)";
@@ -207,7 +223,7 @@ std::vector<Picture> draw_pile(const RunResult& result, const SceneFacts& scene,
                                const std::filesystem::path& folder) {
   const auto seed = std::find_if(result.seeds.begin(), result.seeds.end(),
                                  [](const SeedResult& one) { return !one.final_state.grains.empty(); });
-  if (seed == result.seeds.end()) return {};
+  if (seed == result.seeds.end() || seed->rebound_height) return {};
   const SizeRange range = size_range(seed->final_state.grains);
   const std::string which = fmt::format("seed {}", seed->seed);
   std::vector<Picture> pictures;
@@ -218,19 +234,21 @@ std::vector<Picture> draw_pile(const RunResult& result, const SceneFacts& scene,
       return Picture{title, folder / name, caption};
     });
   };
+  const View cut = cut_view(result, scene, *seed, range.high);
+  const std::string ground = cut.ground.empty() ? "" : " Grey balls are the fixed ones of the ground.";
   if (result.bench_height > 0) {
-    draw(cut_view(result, scene, *seed, range.high), "pile_cut.png", "Cut through the pile",
+    draw(cut, "pile_cut.png", "Cut through the pile",
          fmt::format("The rock inside the pile ({}), cut where it is heaviest: dark grains are fine, yellow "
-                     "ones coarse.",
-                     which));
+                     "ones coarse; the dotted lines part the sections.{}",
+                     which, ground));
     draw(toe_view(result, *seed), "pile_front.png", "Slope from the toe",
-         fmt::format("What a person at the toe sees ({}); the dotted lines part the sections.", which));
+         fmt::format("What a person at the toe sees ({}); the dotted lines part the sections.{}", which,
+                     cut.ground.empty() ? "" : " The fixed balls of the ground are left out."));
   } else {
-    draw(cut_view(result, scene, *seed, range.high), "heap_cut.png", "Cut through the heap",
-         fmt::format("The heap ({}): dark grains are fine, yellow ones coarse. A dashed line is the flank "
-                     "whose slope is the "
-                     "repose angle.",
-                     which));
+    draw(cut, "heap_cut.png", "Cut through the heap",
+         fmt::format("The heap ({}): dark grains are fine, yellow ones coarse.{}{}", which,
+                     seed->repose ? " A dashed line is the flank whose slope is the repose angle." : "",
+                     ground));
   }
   return pictures;
 }

@@ -27,8 +27,8 @@ struct SceneFacts {
 };
 
 /// Views of the first seed's pile, each grain a disc coloured by its diameter: a cut through the heaviest
-/// part seen along the crest, and the slope seen from the toe (end dumping only). None without grains. Drawn
-/// by add_picture().
+/// part seen along the crest, and the slope seen from the toe (end dumping only). None without grains
+/// or of a drop test. Drawn by add_picture().
 std::vector<Picture> draw_pile(const RunResult& result, const SceneFacts& scene,
                                const std::filesystem::path& folder);
 

@@ -18,6 +18,7 @@ struct ChartSeries {
   Kind kind = Kind::ours;  ///< ours: dots and a line; pfc3d: squares; measured: triangles
   int colour = 0;          ///< index; series of one case share it; a chart of one case leaves its name out
   std::vector<Point> points;
+  std::string label{};  ///< in the key; empty: made of the name and the kind
 };
 
 struct ProfileChart {

@@ -89,13 +89,18 @@ bool reaches(const Snapshot& snapshot, const VerticalSection& section) {
   });
 }
 
+bool of_several_dumps(const Snapshot& pile) {
+  return std::any_of(pile.grains.begin(), pile.grains.end(),
+                     [&](const Grain& grain) { return grain.dump != pile.grains.front().dump; });
+}
+
 /// Layers, cells and flow of the first seed.
 std::vector<Picture> draw_inside_of(const RunResult& result, const std::filesystem::path& folder) {
   std::vector<Picture> pictures;
   if (result.seeds.empty() || !result.seeds.front().inside) return pictures;
   const SeedResult& seed = result.seeds.front();
   const VerticalSection& section = seed.inside->section;
-  if (reaches(seed.final_state, section))
+  if (of_several_dumps(seed.final_state) && reaches(seed.final_state, section))
     add_picture(pictures, [&] {
       return draw_layers(seed.final_state.grains, seed.fixed, section, folder / "layers.png");
     });
@@ -127,8 +132,11 @@ std::string inside_table(const RunResult& result) {
       {"arrival_share_of_drop", "the same over g times the height of the bench", ""},
   };
   const std::vector<Outputs> seeds = outputs_of(result.seeds);
+  const bool layered = std::any_of(result.seeds.begin(), result.seeds.end(),
+                                   [](const SeedResult& seed) { return of_several_dumps(seed.final_state); });
   std::string rows;
   for (const Row& row : kRows) {
+    if (!layered && std::string_view(row.name).starts_with("layer_variance")) continue;
     const MeanStd both = spread_of(seeds, row.name);
     if (both.n == 0) continue;
     rows += fmt::format("<tr><td class=\"word\">{}</td><td>{}</td></tr>\n", row.words,

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kGap = 110, kNote = 44;  // pixels between panels, of a line of text
 constexpr double kStrays = 0.002;         // of the mass, on either side
-constexpr unsigned kRim = 0x202020, kFixedGrey = 0xd4d4d4;
+constexpr unsigned kRim = 0x202020;
 
 std::string line(double x0, double z0, double x1, double z1) {
   return fmt::format(

@@ -19,6 +19,9 @@ inline constexpr struct {
   double most_across = 2000, most_up = 1400, left = 170, right = 300, below = 140, above = 90;
 } kSheet;
 
+/// Colour of fixed balls of the ground, 0xRRGGBB.
+inline constexpr unsigned kFixedGrey = 0xd4d4d4;
+
 /// Gnuplot lines of the terminal and the look of axes, for a picture of this many pixels.
 std::string sheet_head(double width, double height);
 

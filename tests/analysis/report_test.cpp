@@ -133,6 +133,62 @@ TEST(Report, ShowsAReposeTest) {
   EXPECT_GT(std::filesystem::file_size(folder / "pictures" / "repose.svg"), 4000U);
 }
 
+TEST(Report, ADropTestHasNoPile) {
+  const auto folder = fresh_folder("drop");
+  RunResult run;
+  run.seeds.resize(1);
+  Grain rock;
+  rock.diameter = 0.1, rock.mass = 1.4, rock.position = Vec3(0, 0, 0.23);
+  run.seeds[0].final_state.grains = {rock};
+  run.seeds[0].rebound_height = 0.18;
+  EXPECT_TRUE(write_report(run, folder).empty());
+  const std::string page = text_of(folder / "report.html");
+  EXPECT_THAT(page, HasSubstr("The rock rebounds to 0.180 m"));
+  EXPECT_THAT(page, Not(HasSubstr("The pile")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "pictures" / "heap_cut.png"));
+}
+
+TEST(Report, TheCutShowsFixedBallsOfTheGround) {
+  const auto folder = fresh_folder("ground");
+  RunResult run = fake_run();
+  for (SeedResult& seed : run.seeds) seed.fixed.clear();
+  const auto bare = draw_pile(run, {45.0}, folder);
+  EXPECT_THAT(bare[0].caption, Not(HasSubstr("fixed")));
+  const std::string without = text_of(bare[0].file);
+  Grain ball;
+  ball.diameter = 1, ball.position = Vec3(2, -100, 3);  // inside the bench, where no rock hides it
+  run.seeds[0].fixed = {ball};
+  EXPECT_THAT(draw_pile(run, {45.0}, folder)[0].caption, Not(HasSubstr("fixed"))) << "far from the cut";
+  for (double y = -5; y < 5; y += 0.25) {
+    ball.position.y() = y;
+    run.seeds[0].fixed.push_back(ball);
+  }
+  const auto drawn = draw_pile(run, {45.0}, folder);
+  EXPECT_THAT(drawn[0].caption, HasSubstr("Grey balls are the fixed ones of the ground."));
+  EXPECT_NE(text_of(drawn[0].file), without);
+}
+
+TEST(Report, ASingleDumpHasNoLayersToTellApart) {
+  const auto folder = fresh_folder("single_dump");
+  VerticalSection section;
+  section.bench = BenchOutline{10, 45};
+  RunResult run = fake_run();
+  run.seeds.resize(1);
+  SeedResult& seed = run.seeds[0];
+  const auto page = [&] {
+    seed.inside = analyse_inside(seed.final_state.grains, {}, seed.original, section);
+    seed.layers = analyse_layers(seed.final_state.grains, seed.original, section, 0.4);
+    std::filesystem::remove_all(folder);
+    write_report(run, folder, {45.0});
+    return text_of(folder / "report.html");
+  };
+  EXPECT_THAT(page(), HasSubstr("scatter of grain size that lies between layers"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "pictures" / "layers.png"));
+  for (Grain& grain : seed.final_state.grains) grain.dump = 1;
+  EXPECT_THAT(page(), Not(HasSubstr("scatter of grain size that lies between layers")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "pictures" / "layers.png"));
+}
+
 TEST(Report, AProfileOfOnePlaceHasNoChart) {
   const auto folder = fresh_folder("one_place");
   RunResult run = fake_run();

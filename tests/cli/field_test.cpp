@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "scree_version.h"
 #include "tests/cli/call.h"
@@ -59,6 +60,9 @@ TEST_F(Field, ReportTablesAndDataset) {
         "ksat.csv", "median_whole.csv", "corrected_whole.csv", "dataset/dataset.yaml",
         "dataset/covariance.csv", "pictures/envelopes.svg", "pictures/ksat.svg"})
     EXPECT_GT(fs::file_size(fs::path(out) / file), 50u) << file;
+  std::ifstream in(fs::path(out) / "pictures/correction.svg");
+  const std::string fines{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_THAT(fines, HasSubstr("stroke-dasharray")) << "its caption calls the line at the limit dotted";
   const Called checked = call("validate " + out + "/dataset/dataset.yaml");
   EXPECT_EQ(checked.code, 0) << checked.text;
   // The curve with fines is a grading that a scenario takes, and far too fine for a load.

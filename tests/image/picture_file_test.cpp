@@ -131,6 +131,24 @@ TEST_F(PictureFile, DiscsOfKnownSizeComeOutAsTheyAre) {
   EXPECT_THAT(slurp(out / "gradings.csv"), HasSubstr("image,section,d100_cm,d95_cm"));
 }
 
+// White letters in a dark box, whatever the picture shows there.
+TEST_F(PictureFile, NamesOfSectionsCanBeRead) {
+  cv::Mat3b picture = grey_with_discs();
+  picture.setTo(cv::Vec3b(150, 150, 150), picture == cv::Vec3b(60, 60, 60));
+  write_picture(folder_ / "discs.png", picture);
+  const Called called = call("image " + (folder_ / "discs.png").string() +
+                             " --scale 1cm/px --sections 2 --out " + (folder_ / "out").string());
+  ASSERT_EQ(called.code, 0) << called.text;
+  const cv::Mat overlay = read_photograph(folder_ / "out/overlay_discs.jpg");
+  for (const int y : {0, overlay.rows / 2}) {
+    const cv::Mat corner = overlay(cv::Rect(0, y, 24, 16)).clone().reshape(1);
+    double darkest = 0, brightest = 0;
+    cv::minMaxLoc(corner, &darkest, &brightest);
+    EXPECT_LT(darkest, 60);
+    EXPECT_GT(brightest, 200);
+  }
+}
+
 // A picture and its copy have no scatter between repeats: nothing is left for a dataset, and nothing is
 // written.
 TEST_F(PictureFile, ARefusedDatasetLeavesNothing) {
