@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/report/sweep_chart.h"
+#include "analysis/results/outputs.h"
 #include "cli/commands.h"
 #include "cli/ensemble/equivalence_fit.h"
 #include "cli/ensemble/output_scope.h"
@@ -311,9 +312,10 @@ int run_equivalence(const CalibrateOptions& options) {
            fmt::format("Made by scree {} ({}): scree calibrate {}.", SCREE_VERSION, SCREE_REVISION,
                        options.file.filename().string())}));
   const auto found = std::count_if(nodes.begin(), nodes.end(), [](const auto& node) { return node.found; });
-  const std::string left_out =
-      fmt::format("{} of {} nodes are left out: no setting of Bullet gives their {} within {:g} degrees",
-                  std::ssize(nodes) - found, nodes.size(), spec.output, spec.within);
+  const std::string left_out = fmt::format(
+      "{} of {} nodes are left out: no setting of Bullet gives their {} within {:g} {}, or too few "
+      "runs gave it",
+      std::ssize(nodes) - found, nodes.size(), spec.output, spec.within, scree::unit_of_output(spec.output));
   if (found == 0) {
     fmt::print(stderr, "{}; table: {}\n", left_out, table.string());
     return kFailed;

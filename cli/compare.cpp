@@ -16,6 +16,12 @@ int run_compare(const std::filesystem::path& dir, const std::vector<std::string>
     fmt::print(stderr, "{}\n", error.what());
     return kBadInput;
   }
+  if (run.interrupted) {
+    fmt::print(stderr,
+               "{}: this run was ended before its pile was finished; scree run --resume goes on with it\n",
+               file.string());
+    return kBadInput;
+  }
   const auto reference = scree::read_reference(asset_dir() / "reference" / "results.csv");
   std::set<std::string> known;
   for (const auto& value : reference) known.insert(value.case_name);
@@ -32,9 +38,6 @@ int run_compare(const std::filesystem::path& dir, const std::vector<std::string>
                file.string());
     return kBadInput;
   }
-  if (run.interrupted)
-    fmt::print(stderr,
-               "note: this run was ended before its pile was finished; `scree run --resume` goes on\n");
   fmt::print("{} ({} seed{})\n", run.title, run.seeds.size(), run.seeds.size() == 1 ? "" : "s");
   const auto comparison = scree::compare_with_reference(run.outputs, reference, chosen);
   if (comparison.empty()) fmt::print("none of the values of these cases is in this run\n");

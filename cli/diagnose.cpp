@@ -60,11 +60,13 @@ void print_plan(const scree::DiagnosisSession& session, const scree::ResultsStor
     if (readings > 0) fmt::print("; {} more readings of their piles", readings);
     fmt::print("\n");
     all.insert(piles.begin(), piles.end());
+    const std::size_t before = still_to_come.size();
     still_to_come.insert(to_come.begin(), to_come.end());
+    const std::size_t more = still_to_come.size() - before;
     if (timed > 0)
-      left += seconds / static_cast<double>(timed) * static_cast<double>(to_come.size());
+      left += seconds / static_cast<double>(timed) * static_cast<double>(more);
     else
-      known = to_come.empty() && known;
+      known = more == 0 && known;
   }
   fmt::print(
       "{} simulations, {} of them in the store; then one to {} rounds of up to {} about what may be named, "

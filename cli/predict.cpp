@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "analysis/statistics/convex_hull.h"
@@ -21,13 +22,25 @@ struct Axis {
   double value(double share) const { return low + share * (high - low); }
 };
 
-// Distance from the convex hull of the runs, in ranges: beyond what rounding does to a point on the edge; and
-// over the root of the number of parameters, a quarter of the diagonal of the ranges.
-constexpr double kOutside = 1e-4, kFarOutside = 0.25;
+constexpr double kOutside = 1e-4;  // of the ranges: beyond what rounding does to a point on the edge
+constexpr double kBeside = 0.5;  // of the way from one run to the next: so far beside them it is extrapolated
 
 int refuse(const std::string& message) {
   fmt::print(stderr, "{}\n", message);
   return kBadInput;
+}
+
+// Largest distance from a point to the nearest other one; rows are points.
+double widest_gap(const Eigen::MatrixXd& x) {
+  double widest = 0;
+  for (Eigen::Index a = 0; a < x.rows(); ++a) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (Eigen::Index b = 0; b < x.rows(); ++b)
+      if (const double distance = (x.row(a) - x.row(b)).norm(); distance > 0)
+        nearest = std::min(nearest, distance);
+    if (std::isfinite(nearest)) widest = std::max(widest, nearest);
+  }
+  return widest;
 }
 
 }  // namespace
@@ -120,12 +133,12 @@ int run_predict(const PredictOptions& options) {
   // Within the ranges of all parameters there may be no runs around it: beside points along a diagonal, say.
   const Eigen::VectorXd inside = scree::nearest_in_hull(x, point);
   const double outside = (inside - point).norm();
-  if (outside > kFarOutside * std::sqrt(static_cast<double>(axes.size()))) {
+  if (outside > kOutside + kBeside * widest_gap(x)) {
     std::vector<std::string> nearest;
     for (std::size_t k = 0; k < axes.size(); ++k)
       nearest.push_back(
           fmt::format("{}={:.6g}", sweep.parameters[k], axes[k].value(inside[static_cast<Eigen::Index>(k)])));
-    return refuse(fmt::format("{}: lies outside of what was simulated; the nearest that can be predicted: {}",
+    return refuse(fmt::format("{}: lies outside of what was simulated; the nearest within it: {}",
                               fmt::join(options.values, " "), fmt::join(nearest, " ")));
   }
   const scree::Emulator emulator(

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kPriorRepeats = 10;  // what the simulation's scatter counts, in repeats; m in the header
 constexpr double kEnoughTests = 20;   // more than values: their covariance needs no help
+constexpr double kAllOfIt = 1.2;      // of a stated variance over that of repeats
 constexpr double kLeastRatio = 0.05;  // of a measured variance to the simulation's: repeats that were rounded
 
 // Expected logarithm of chi-square of so many degrees of freedom, over them.
@@ -49,6 +50,11 @@ std::vector<Eigen::Index> correlated_with(const Eigen::MatrixXd& covariance, Eig
 Repeated repeated_values(const Measurements& measured, std::size_t experiment,
                          const Eigen::VectorXd& seed_variance) {
   const std::vector<Eigen::Index> all = measured.of(experiment);
+  const auto is_scatter = [&](Eigen::Index k) {  // and nothing beyond it, but for rounding
+    const MeasuredValue& value = measured.values[static_cast<std::size_t>(k)];
+    return value.uncertainty * value.uncertainty <=
+           kAllOfIt * *value.std * *value.std / static_cast<double>(*value.repeats);
+  };
   const auto varies = [&](Eigen::Index k) {
     const MeasuredValue& value = measured.values[static_cast<std::size_t>(k)];
     return value.experiment == experiment && has_repeats(value) && seed_variance[k - all.front()] > 0;
@@ -59,7 +65,7 @@ Repeated repeated_values(const Measurements& measured, std::size_t experiment,
     if (group.front() != k || !std::all_of(group.begin(), group.end(), varies)) continue;
     if (group.size() == 1)
       repeated.uncorrelated.push_back(k);
-    else
+    else if (std::all_of(group.begin(), group.end(), is_scatter))
       repeated.correlated.push_back(group);
   }
   return repeated;

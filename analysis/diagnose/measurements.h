@@ -48,6 +48,8 @@ struct Measurements {
 /// - What the stated uncertainty holds beyond s / sqrt(n) is added to the diagonal and is known: the freedom
 ///   of the block is that of its scatter over the mean square of scatter's share in its variances
 ///   (Welch-Satterthwaite).
+/// - Where such correlated values are less certain than their repeats say (by more than a fifth of the
+///   variance), their covariance is of errors that they share, too: it stays as stated and is known.
 /// - Other values, and those correlated with values of another experiment, stay as stated and are known.
 struct WorkingCovariance {
   Eigen::MatrixXd matrix;

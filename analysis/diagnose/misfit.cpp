@@ -43,7 +43,7 @@ Misfit misfit(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covarian
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt()(order);
   const Eigen::LLT<Eigen::MatrixXd> factor(Eigen::MatrixXd(
       scale.cwiseInverse().asDiagonal() * covariance(order, order) * scale.cwiseInverse().asDiagonal()));
-  if (factor.info() != Eigen::Success)
+  if (factor.info() != Eigen::Success || !(covariance.diagonal().minCoeff() > 0))
     throw std::runtime_error("the covariance of measurements and simulations is not positive definite");
   const Eigen::VectorXd white = factor.matrixL().solve(difference(order).cwiseQuotient(scale));
   Misfit all;

@@ -126,6 +126,7 @@ Number place(const FieldAnalysis& field, const Parts& parts) {
     const auto* values = values_of(field, parts[1], section.name);
     if (values == nullptr) return std::nullopt;
     const double here = mean_std(*values).mean, at = section.x_over_l;
+    if (!std::isfinite(here)) continue;  // no picture tells
     if (y < wanted && here >= wanted) return x + (at - x) * (wanted - y) / (here - y);
     x = at, y = here;
   }

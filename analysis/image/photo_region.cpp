@@ -54,7 +54,8 @@ double PhotoRegion::places_of_disc(double diameter) const {
 
 double PhotoRegion::weight(const Extent& grain, bool within_frame) const {
   if (is_rectangle()) {
-    const double whole = static_cast<double>(box_.width - grain.box.width) * (box_.height - grain.box.height);
+    const double whole = static_cast<double>(std::max(box_.width - grain.box.width, 1)) *
+                         std::max(box_.height - grain.box.height, 1);
     return (within_frame ? middles(grain.box.width, grain.box.height) : area_) / whole;
   }
   const double width = (grain.widest + grain.narrowest) / 2;

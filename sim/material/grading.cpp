@@ -154,7 +154,7 @@ Grading Grading::with_fines(double share, double ratio) const {
   return Grading(name_, std::move(points));
 }
 
-Grading read_grading(const std::filesystem::path& file, double from) {
+Grading read_grading(const std::filesystem::path& file, std::optional<double> scalped_at) {
   DelimitedTable table(file, kMostFileBytes);
   const Columns columns = columns_of(file, table);
   struct Row {
@@ -188,11 +188,12 @@ Grading read_grading(const std::filesystem::path& file, double from) {
   if (rows.back().passing != 100)
     throw FileError(file, rows.back().line,
                     fmt::format("the largest diameter must have passing 100, not {}", rows.back().passing));
+  const double from = scalped_at.value_or(0);
   if (rows.front().passing != 0 && !(from > 0))
-    throw FileError(file, rows.front().line,
-                    fmt::format("the smallest diameter must have passing 0, not {}; grading_from_m of a "
-                                "scenario leaves out what is finer than a diameter",
-                                rows.front().passing));
+    throw FileError(
+        file, rows.front().line,
+        fmt::format("the smallest diameter must have passing 0, not {}{}", rows.front().passing,
+                    scalped_at ? "; grading_from_m leaves out what is finer than a diameter" : ""));
   if (rows.front().passing != 0 && from < rows.front().diameter)
     throw FileError(
         file, rows.front().line,

@@ -2,6 +2,7 @@
 // Gradings (particle size distributions) and spheres that honour them.
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,9 +49,10 @@ class Grading {
 
 /// Reads a grading file: a table (input_text.h) with the columns `diameter_mm` (or `_cm`, `_m`) and
 /// `passing_pct`, fine or coarse first, `#` comment lines (source, how it was rebuilt), at most 10,000 points
-/// between 1 micrometre and 1 km. What is finer than `from` (m) is left out and the rest counts as the whole;
-/// the curve need begin with passing 0 only if nothing is. Throws FileError: what is wrong, what is allowed.
-Grading read_grading(const std::filesystem::path& file, double from = 0);
+/// between 1 micrometre and 1 km. What is finer than `from` (m; a scenario's grading_from_m) is left out and
+/// the rest counts as the whole; the curve need begin with passing 0 only if nothing is. Throws FileError:
+/// what is wrong, what is allowed.
+Grading read_grading(const std::filesystem::path& file, std::optional<double> from = {});
 
 /// Mean of d^-power (m^-power) over the mass, exact for a curve linear in log d: between two points it is
 /// (a^-power - b^-power) / (power ln(b/a)), and 1 for power 0.

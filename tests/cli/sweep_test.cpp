@@ -239,7 +239,12 @@ TEST_F(SweepCli, PredictsOnlyAmongThePointsOfADesign) {
       corner.text,
       HasSubstr("material.local_damping=0.3 experiment.height_m=2: lies outside of what was simulated"));
   EXPECT_THAT(corner.text, HasSubstr("material.local_damping=0.4 experiment.height_m=1.5"));
+  // Half of the way there the closed form is 0.41 m, and runs along the diagonal say 0.24 to 0.31 m.
+  EXPECT_EQ(predict("list.yaml", "0.34", "1.7").code, 2);
   EXPECT_EQ(predict("list.yaml", "0.4", "1.5").code, 0);
+  const Called beside = predict("list.yaml", "0.39", "1.54");
+  EXPECT_EQ(beside.code, 0);
+  EXPECT_THAT(beside.text, HasSubstr("it is extrapolated"));
   EXPECT_EQ(predict("list.yaml", "0.35", "1.25").code, 0);
   ASSERT_EQ(call("sweep " + in_folder("grid.yaml") + store).code, 0);
   const Called there = predict("grid.yaml", "0.3", "2");

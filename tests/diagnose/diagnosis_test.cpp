@@ -589,6 +589,25 @@ TEST(WhereToLearn, IsAllThatIsOpenAndNotOnlyWhatIsKnown) {
   int far = 0;
   for (const ModelPoint& at : points) far += std::abs(at.effects.at(0).amplitude() - 0.3) > 0.2 ? 1 : 0;
   EXPECT_GE(far, 19);  // 23 of 40; by the likelihood itself 14
+
+  // Where the nearest simulation of one experiment gave nothing, no matter what others did there, none lies.
+  std::vector<SimulatedPoints> simulated(2);
+  for (int b = -10; b <= 10; ++b)
+    for (int k = 1; k <= 20; ++k) {
+      const ModelPoint at{Eigen::VectorXd::Constant(1, 0.1 * b),
+                          {{0, Eigen::VectorXd::Constant(1, 0.05 * k)}}};
+      (k <= 10 ? simulated[0].measured : simulated[0].gave_nothing).push_back(at);
+      simulated[1].measured.push_back(at);
+    }
+  const auto highest = [](const std::vector<ModelPoint>& of) {
+    double most = 0;
+    for (const ModelPoint& at : of) most = std::max(most, at.effects.at(0).amplitude());
+    return most;
+  };
+  EXPECT_GT(highest(points), 0.7);
+  const std::vector<ModelPoint> kept = where_to_learn(space, d, model, {{0}, false, 0}, 40, simulated);
+  EXPECT_EQ(kept.size(), 40u);
+  EXPECT_LT(highest(kept), 0.55);
 }
 
 // An effect that does most of what it can in the lowest seventh of its range, more of it where the friction

@@ -5,6 +5,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <stdexcept>
+#include <string>
 
 #include "tests/diagnose/synthetic.h"
 
@@ -50,7 +51,18 @@ TEST(Misfit, BlocksAddUpWhateverIsCorrelated) {
   EXPECT_NEAR(whole.log_density, -0.5 * (chi2 + std::log(a.determinant())), 1e-12);
   EXPECT_NEAR(split.log_shape, -0.5 * split.of_blocks[0] - 0.5 * (4 + 2) * std::log1p(split.of_blocks[1] / 4),
               1e-12);
-  EXPECT_THROW(misfit(d, -a, {{{0, 1, 2, 3}, kKnown}}), std::runtime_error);
+  const auto why = [&](const Eigen::Matrix4d& covariance) {
+    try {
+      misfit(d, covariance, {{{0, 1, 2, 3}, kKnown}});
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  Eigen::Matrix4d indefinite = a;
+  indefinite(0, 1) = indefinite(1, 0) = 2;
+  for (const Eigen::Matrix4d& bad : {indefinite, Eigen::Matrix4d(-a)})
+    EXPECT_NE(why(bad).find("not positive definite"), std::string::npos);
 }
 
 // Two numbers that lie 16.8 standard uncertainties off stay so when a third comes with two repeats, whose
@@ -71,7 +83,8 @@ TEST(Misfit, AWeakNumberHidesNoStrongOnes) {
 struct Rates {
   double five = 0, one = 0;
 };
-Rates rates(const std::array<int, 2>& repeats, bool correlated) {
+// `shared`: deviation of an error that all numbers of a measurement share, which the covariance states.
+Rates rates(const std::array<int, 2>& repeats, bool correlated, double shared) {
   constexpr int kTrials = 1000;
   const SyntheticWorld world;
   const LearntModel model(world.space, world.experiments, world.design(1));
@@ -81,8 +94,15 @@ Rates rates(const std::array<int, 2>& repeats, bool correlated) {
     mean[k] = k < world.numbers(0) ? world.mean(0, k, truth) : world.mean(1, k - world.numbers(0), truth);
   Rates rates;
   for (int trial = 0; trial < kTrials; ++trial) {
-    const Measurements measured =
-        world.measure(truth, repeats, 900 + static_cast<std::uint64_t>(trial), correlated);
+    const auto seed = 900 + static_cast<std::uint64_t>(trial);
+    Measurements measured = world.measure(truth, repeats, seed, correlated);
+    const double offset = shared * Random(seed, 2, RandomPurpose::measurement).normal();
+    for (std::size_t k = 0; shared > 0 && k < measured.values.size(); ++k) {
+      MeasuredValue& value = measured.values[k];
+      value.value += offset;
+      value.uncertainty = std::hypot(value.uncertainty, shared);
+    }
+    measured.covariance.array() += shared * shared;
     const WorkingCovariance working = working_covariance(measured, model.surfaces());
     const double p =
         gap_of(misfit(measured.vector() - mean, working.matrix, working.blocks), working.blocks, 0).p;
@@ -99,6 +119,7 @@ TEST(Misfit, ATrueModelIsSeldomDoubted) {
   struct Case {
     std::array<int, 2> repeats;
     bool correlated;
+    double shared = 0;
   };
   for (const Case& each : {Case{{5, 5}, false},
                            {{2, 100}, false},
@@ -106,8 +127,9 @@ TEST(Misfit, ATrueModelIsSeldomDoubted) {
                            {{5, 5}, true},
                            {{8, 8}, true},
                            {{12, 42}, true},
-                           {{42, 42}, true}}) {
-    const Rates found = rates(each.repeats, each.correlated);
+                           {{42, 42}, true},
+                           {{42, 42}, true, 2}}) {
+    const Rates found = rates(each.repeats, each.correlated, each.shared);
     EXPECT_LT(found.five, 0.05 + 3 * 0.007) << each.repeats[0] << " " << each.correlated;
     EXPECT_LT(found.one, 0.01 + 3 * 0.003) << each.repeats[0] << " " << each.correlated;
   }

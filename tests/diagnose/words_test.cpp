@@ -82,7 +82,8 @@ TEST_F(Said, ParametersAtTheEndOfTheirRange) {
   EXPECT_FALSE(at_end(0.2959));
   EXPECT_THAT(words(), Not(HasSubstr("re-calibrated a")));
   EXPECT_TRUE(at_end(0.2961));
-  EXPECT_THAT(words(), HasSubstr("At the end of its range: re-calibrated a 0.296 of a range from 0.100 to 0.300"));
+  EXPECT_THAT(words(),
+              HasSubstr("At the end of its range: re-calibrated a 0.296 of a range from 0.100 to 0.300"));
   EXPECT_THAT(words(), HasSubstr("Widen it in the model file if rock may be so."));
   // What was simulated lies there, and the fit does not: that value is the one said.
   j.best.base[0] = 0;

@@ -50,8 +50,8 @@ PhotoAnalysisSettings for_spheres() {
 struct Case {
   GrainLayout layout;
   double coverage;
-  // Error of D50: the bars that are asked of the analysis, docs/image.md. One picture in twelve misses them
-  // (bench/results/photographs.csv: 15 of 180 with the sun at 80, 60 and 40 degrees).
+  // Error of D50: the bars that are asked of the analysis, docs/image.md. Other pictures of this rock miss
+  // them: 12 of 90 in bench/results/photographs.csv with the sun at 80, 60 and 40 degrees.
   double allowed;
 };
 
