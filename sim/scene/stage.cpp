@@ -228,10 +228,7 @@ bool Stage::advance_to_rest(const char* stage, double share_now, double share_th
     const double passed = world_->time() - start;
     // The share is of the load's mass, so that a growing pile does not hide that a load still moves.
     progress_.moving_share = observe([&] {
-      double mass = 0;
-      for (int i = 0; i < world_->spheres().movable; ++i)
-        if (!world_->spheres().lost[i]) mass += world_->spheres().velocity[i].w;
-      return load_mass_ > 0 ? world_->moving_mass_share(stop.speed) * mass / load_mass_ : 0.0;
+      return load_mass_ > 0 ? world_->moving_mass_share(stop.speed) * world_->mass() / load_mass_ : 0.0;
     });
     if (passed >= stop.min_time && progress_.moving_share < stop.moving_mass_share) return true;
     if (passed >= stop.max_time) {
