@@ -52,8 +52,8 @@ struct BenchSpec {
 
 enum class Release { open_gate, hoist };
 
-/// Truck bed and tailgate. Local frame: origin at the middle of the discharge lip on the bed's floor, bed
-/// along -x, z up.
+/// Truck bed and the gate behind which its load settles. Local frame: origin at the middle of the discharge
+/// lip on the bed's floor, bed along -x, z up.
 struct TruckSpec {
   std::filesystem::path bed_mesh, gate_mesh;
   double scale = 1.0;
