@@ -244,7 +244,8 @@ Fields keys(StopRule& s) {
       {"speed_m_per_s", Number{&s.speed, "m/s", {1e-6, 10}}, "A grain faster than this is moving."},
       {"moving_mass_share", Number{&s.moving_mass_share, kNone, {0, 1, true, true}},
        "The load is at rest when less than this share of its mass is moving."},
-      {"min_time_s", Number{&s.min_time, kSecond, {0, 1e5}}, "Least time after the release."},
+      {"min_time_s", Number{&s.min_time, kSecond, {0, 1e5}},
+       "Least time after the release. A load that has not moved yet is waited for at least 1 s."},
       {"max_time_s", Number{&s.max_time, kSecond, {0, 1e5, true, false}},
        "Most time after the release; reaching it is reported."},
   };
