@@ -226,7 +226,8 @@ Fields keys(Keyframe& k) {
 Fields keys(ToolSpec& t) {
   return {
       {"name", Text{&t.name, {1, 100}}, "Name of the tool, of its own.", true},
-      {"mesh", MeshFile{&t.mesh, "", &t.scale}, "Mesh of the tool: STL, OBJ, PLY, glTF or GLB.", true},
+      {"mesh", MeshFile{&t.mesh, "", &t.scale}, "Mesh of the tool: STL, OBJ, PLY (z up), glTF or GLB (y up).",
+       true},
       {"mesh_scale", Number{&t.scale, "m", kScale}, kScaleDoc},
       {"mu", NumberOr{&t.mu, kFriction, kRock}, kMuDoc},
       {"mu_r", NumberOr{&t.mu_r, kFriction, kRock}, kMuRDoc},
