@@ -63,7 +63,6 @@ int RrlinearWorld::stepSimulation(btScalar span, int, btScalar) {
 }
 
 void RrlinearWorld::sphere_pushed(int index) {
-  if (changed_) return;  // it has not been sorted in yet, and is awake
   energy_watch_.restart();
   disturbed_.assign(1, index);
   wake(disturbed_);
@@ -74,7 +73,8 @@ void RrlinearWorld::sphere_lost(int index) {
   if (!changed_) {  // those that lay on it
     std::vector<int> left_alone;
     for (const Neighbour& n : pairs_.neighbours(index))
-      if (n.touching() && n.sphere < spheres_.movable) left_alone.push_back(n.sphere);
+      if (n.touching() && n.sphere < spheres_.movable && !spheres_.lost[n.sphere])
+        left_alone.push_back(n.sphere);
     wake(left_alone);
     for (const Neighbour& n : pairs_.neighbours(index))
       if (!spheres_.lost[n.sphere] && n.touching()) account_.lost_other += held_by(index, n);
