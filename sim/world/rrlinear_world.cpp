@@ -506,28 +506,34 @@ double RrlinearWorld::own_step2(int i) const {
   const bool damped = law_.has_dashpots();
   Vec3 shift = Vec3::Zero(), turn = Vec3::Zero();  // N/m, N m/rad
   Vec3 drag = Vec3::Zero(), brake = Vec3::Zero();  // N s/m, N m s/rad
-  const auto add = [&](const ContactStiffness& k, const Vec3& normal, double reduced_mass) {
+  const auto add = [&](const ContactStiffness& k, const Vec3& normal, double overlap, double reduced_mass) {
     const Vec3 along = normal.cwiseAbs2(), across = Vec3::Ones() - along;
     shift += k.kn * along + k.ks * across;
-    turn += (k.ks * a.w * a.w + k.kr) * across;
+    // The contact halves the overlap: of a small sphere pressed deep into a block it lies beyond the far
+    // side.
+    const double arm = std::max(a.w, 0.5 * overlap - a.w);
+    turn += (k.ks * arm * arm + k.kr) * across;
     if (law_.mu_t > 0) turn += k.kr * along;
     if (!damped) return;
     const double viscosity = shear_dashpot(law_, k, reduced_mass);
     drag += normal_dashpot(law_, k, reduced_mass) * along + viscosity * across;
-    brake += viscosity * a.w * a.w * across;
+    brake += viscosity * arm * arm * across;
   };
   for (const Neighbour& n : pairs_.neighbours(i)) {
     const Quad& b = spheres_.place[n.sphere];
     const Vec3 d = b.vec() - a.vec();
     const double reach = a.w + b.w + kNearGap * std::min(a.w, b.w), d2 = d.squaredNorm();
-    if (d2 < reach * reach && d2 > 0)
-      add(ball_ball(law_, a.w, b.w), d / std::sqrt(d2), damped ? spheres_.reduced_mass(i, n.sphere) : 0);
+    if (d2 >= reach * reach || !(d2 > 0)) continue;
+    const double distance = std::sqrt(d2);
+    add(ball_ball(law_, a.w, b.w), d / distance, a.w + b.w - distance,
+        damped ? spheres_.reduced_mass(i, n.sphere) : 0);
   }
   if (facets_.any(i)) {
     const ContactStiffness wall = ball_facet(law_, a.w);
     const double mass = spheres_.grain_mass(i);
-    for (int k = 0; k < facets_.count(i); ++k) add(wall, facets_.contact(i, k).normal, mass);
-    if (facets_.count(i) == 0) add(wall, Vec3(0, 0, 1), mass);
+    // Of these the arm is never longer than the radius (mesh_forces).
+    for (int k = 0; k < facets_.count(i); ++k) add(wall, facets_.contact(i, k).normal, 0, mass);
+    if (facets_.count(i) == 0) add(wall, Vec3(0, 0, 1), 0, mass);
   }
   const double mass = spheres_.velocity[i].w, inertia = spheres_.spin[i].w;
   const double free = free_step2(a.w, mass, inertia);
