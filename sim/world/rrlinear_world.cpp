@@ -182,6 +182,7 @@ void RrlinearWorld::prepare() {
   blocks_due_ = true;
   dt_ = stable_step();
   steps_to_check_ = 1;  // contacts have their forces then
+  checks_to_energy_ = 1;
   energy_watch_.restart();
   if (before_fragments_) account_.fragments += energy_by_places() - *before_fragments_;
   before_fragments_.reset();
@@ -405,7 +406,7 @@ void RrlinearWorld::step(double dt) {
     account_.pressed += work.pressed;
     momentum += work.momentum;
     repair_due_ = repair_due_ || work.left_ball;
-    energy_watch_.supply(work.supplied);
+    energy_watch_.supply(work.supplied + std::max(work.pressed, 0.0));
     statistics_.largest_overlap_ratio = std::max(statistics_.largest_overlap_ratio, work.overlap_ratio);
     disturbed_.insert(disturbed_.end(), work.disturbed.begin(), work.disturbed.end());
   }
@@ -508,10 +509,10 @@ double RrlinearWorld::own_step2(int i) const {
   Vec3 drag = Vec3::Zero(), brake = Vec3::Zero();  // N s/m, N m s/rad
   const auto add = [&](const ContactStiffness& k, const Vec3& normal, double overlap, double reduced_mass) {
     const Vec3 along = normal.cwiseAbs2(), across = Vec3::Ones() - along;
-    shift += k.kn * along + k.ks * across;
     // The contact halves the overlap: of a small sphere pressed deep into a block it lies beyond the far
     // side.
     const double arm = std::max(a.w, 0.5 * overlap - a.w);
+    shift += k.kn * along + k.ks * across;
     turn += (k.ks * arm * arm + k.kr) * across;
     if (law_.mu_t > 0) turn += k.kr * along;
     if (!damped) return;
@@ -636,7 +637,7 @@ void RrlinearWorld::check_energy() {
     now.potential += work.energy.potential;
     now.scale += work.energy.scale;
   }
-  energy_watch_.check(now, time_);
+  energy_watch_.check(now, account_.losses.total() - account_.losses.dashpots, time_);
 }
 
 Energy RrlinearWorld::energy() const {
