@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/report/sweep_chart.h"
-#include "analysis/results/outputs.h"
+#include "analysis/results/output_units.h"
 #include "cli/commands.h"
 #include "cli/ensemble/equivalence_fit.h"
 #include "cli/ensemble/output_scope.h"

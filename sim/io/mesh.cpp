@@ -169,6 +169,14 @@ Transform to_eigen(const aiMatrix4x4& m) {
   return t;
 }
 
+/// From the axes of a format to ours, z up. glTF defines +y as up (Khronos Group, glTF 2.0 specification,
+/// section 3.4); the others define nothing and are taken as they stand.
+Transform to_z_up(const std::string& extension) {
+  Transform t = Transform::Identity();
+  if (extension == "gltf" || extension == "glb") t.topLeftCorner<3, 3>() << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  return t;
+}
+
 /// Appends the triangles of a node and its children; returns how many points and lines it left out.
 std::size_t collect(const aiScene& scene, const aiNode& node, const Transform& parent, TriangleMesh& mesh) {
   const Transform transform = parent * to_eigen(node.mTransformation);
@@ -231,7 +239,7 @@ std::size_t read_with_assimp(const fs::path& file, const std::string& extension,
     throw std::runtime_error(words);
   }
   if (scene->mRootNode == nullptr) return 0;
-  return collect(*scene, *scene->mRootNode, Transform::Identity(), mesh);
+  return collect(*scene, *scene->mRootNode, to_z_up(extension), mesh);
 }
 
 Eigen::AlignedBox3d bounding_box(const TriangleMesh& mesh) {

@@ -31,11 +31,12 @@ struct LoadedMesh {
 };
 
 /// Reads STL, OBJ, PLY or glTF/GLB (by extension; nothing else is tried), multiplies by `scale` (metres per
-/// file unit), applies the node transforms of the file, welds vertices, drops zero-area faces (warning),
-/// orients faces outwards when the mesh is closed, and checks it. Errors: unreadable, no triangles, not
-/// finite, larger than `max_size` (m; "8000 m: millimetres read as metres?" with the `scale` to write) or
-/// smaller than 1 mm. Warnings: holes (open edges, how many and where), edges shared by three or more faces,
-/// inconsistent orientation, dropped faces. Never throws for a bad file: the report says it.
+/// file unit), applies the node transforms of the file, turns glTF, whose y is up, to z up ((x, y, z) becomes
+/// (x, -z, y)), welds vertices, drops zero-area faces (warning), orients faces outwards when the mesh is
+/// closed, and checks it. Errors: unreadable, no triangles, not finite, larger than `max_size` (m; "8000 m:
+/// millimetres read as metres?" with the `scale` to write) or smaller than 1 mm. Warnings: holes (open edges,
+/// how many and where), edges shared by three or more faces, inconsistent orientation, dropped faces. Never
+/// throws for a bad file: the report says it.
 LoadedMesh load_mesh(const std::filesystem::path& file, double scale = 1.0, double max_size = 1000.0);
 
 /// Axis-aligned box, closed, outward faces.

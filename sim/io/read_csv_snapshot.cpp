@@ -16,10 +16,11 @@ struct Unit {
 constexpr std::array<Unit, 4> kLengths{{{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}}};
 constexpr std::array<Unit, 3> kMasses{{{"kg", 1}, {"g", 1e-3}, {"t", 1e3}}};
 
-// Where a quantity stands, and its factor to SI.
+// Where a quantity stands, its factor to SI, and whether the column names its unit.
 struct Column {
   std::size_t at;
   double factor;
+  bool has_unit;
 };
 
 std::map<std::string, Column, std::less<>> columns_of(const std::filesystem::path& file,
@@ -37,6 +38,7 @@ std::map<std::string, Column, std::less<>> columns_of(const std::filesystem::pat
     }
     if (quantity.empty()) continue;
     double factor = 1;
+    bool has_unit = false;
     const bool mass = quantity == "mass",
                length = quantity.size() == 1 || quantity == "diameter" || quantity == "radius";
     if (length) factor = length_unit;
@@ -51,11 +53,20 @@ std::map<std::string, Column, std::less<>> columns_of(const std::filesystem::pat
                         fmt::format("the unit of column '{}' is none of {}", table.header()[k],
                                     mass ? "kg, g, t" : "m, cm, mm, um"));
       factor = found->factor;
+      has_unit = true;
     }
-    if (!columns.emplace(quantity, Column{k, factor}).second)
+    if (!columns.emplace(quantity, Column{k, factor, has_unit}).second)
       throw FileError(file, table.header_line(), fmt::format("two columns are '{}'", quantity));
   }
   return columns;
+}
+
+// What stands in a column `mass` that names no unit is kilograms where all lengths are metres.
+bool unknown_mass_unit(const std::map<std::string, Column, std::less<>>& columns) {
+  const auto mass = columns.find("mass");
+  if (mass == columns.end() || mass->second.has_unit) return false;
+  return std::any_of(columns.begin(), columns.end(),
+                     [](const auto& column) { return column.second.factor != 1; });
 }
 
 }  // namespace
@@ -64,6 +75,12 @@ RawSnapshot read_csv_snapshot(const std::filesystem::path& file, double length_u
   DelimitedTable table(file);
   const auto columns = columns_of(file, table, length_unit);
   const auto has = [&](std::string_view name) { return columns.find(name) != columns.end(); };
+  const auto& names = table.header();
+  if (std::all_of(names.begin(), names.end(), [](const std::string& name) { return number_in(name); }))
+    throw FileError(
+        file, table.header_line(),
+        "no header: a line that names the columns x, y, z and diameter or radius is needed before the "
+        "numbers");
   for (const char* name : {"x", "y", "z"})
     if (!has(name))
       throw FileError(file, table.header_line(),
@@ -73,6 +90,7 @@ RawSnapshot read_csv_snapshot(const std::filesystem::path& file, double length_u
     throw FileError(file, table.header_line(), "no radius: a column diameter or radius is needed");
   RawSnapshot raw;
   raw.in_metres = true;
+  raw.unknown_mass_unit = unknown_mass_unit(columns);
   raw.has_mass = has("mass"), raw.has_id = has("id"), raw.has_dump = has("dump");
   while (table.next()) {
     const GrainPlace place{file, table.line(), raw.grains.size()};

@@ -17,12 +17,16 @@ struct RawSnapshot {
   std::vector<Grain> grains;
   std::vector<int> lines;  ///< of each grain; empty where the file has no lines
   bool has_mass = false, has_id = false, has_dump = false;
-  bool in_metres = false;  ///< lengths are metres, masses kilograms
+  bool in_metres = false;          ///< lengths are metres, whatever the unit of length
+  bool unknown_mass_unit = false;  ///< masses may be in any unit
   std::vector<Grain> original, fixed;
 };
 
 /// Columns of a row that are read; bounds what a line of any length takes.
 inline constexpr int kMostColumns = 1000;
+
+/// With it a text of YADE begins.
+inline constexpr std::string_view kYadeFormat = "#format ";
 
 /// What a column or an array holds, by the names that programs give it: x, y, z, diameter, radius, mass, id,
 /// dump, vx, vy, vz; empty for anything else. Case does not count.
@@ -33,6 +37,8 @@ RawSnapshot read_csv_snapshot(const std::filesystem::path& file, double length_u
 /// `text` and `bytes`: of the file, without a byte order mark.
 RawSnapshot read_lammps_dump(const std::filesystem::path& file, std::string_view text,
                              std::optional<int> frame);
+/// Text of YADE (export.text): its first line names the columns.
+RawSnapshot read_yade_text(const std::filesystem::path& file, std::string_view text);
 RawSnapshot read_xyz(const std::filesystem::path& file, std::string_view text, std::optional<int> frame);
 RawSnapshot read_vtk(const std::filesystem::path& file, std::string_view bytes);
 RawSnapshot read_vtk_xml(const std::filesystem::path& file, std::string_view bytes);

@@ -58,6 +58,7 @@ RawSnapshot read_raw(const std::filesystem::path& file, const SnapshotOptions& o
   if (end != std::string_view::npos && number_in(start.substr(0, end)))
     return read_xyz(file, bytes, options.frame);
   one_frame("a table");
+  if (bytes.starts_with(kYadeFormat)) return read_yade_text(file, bytes);
   whole = {};  // a table reads its file itself
   return read_csv_snapshot(file, options.length_unit.value_or(1));
 }
@@ -82,7 +83,7 @@ std::string_view meaning_of_column(std::string_view name) {
   struct Alias {
     std::string_view name, meaning;
   };
-  static constexpr std::array<Alias, 37> kAliases{{
+  static constexpr std::array<Alias, 40> kAliases{{
       {"x", "x"},
       {"y", "y"},
       {"z", "z"},
@@ -98,6 +99,9 @@ std::string_view meaning_of_column(std::string_view name) {
       {"position x", "x"},
       {"position y", "y"},
       {"position z", "z"},
+      {"pos_x", "x"},
+      {"pos_y", "y"},
+      {"pos_z", "z"},
       {"diameter", "diameter"},
       {"d", "diameter"},
       {"particle diameter", "diameter"},
@@ -134,7 +138,7 @@ SnapshotRead read_snapshot(const std::filesystem::path& file, const SnapshotOpti
   const double unit = raw.in_metres ? 1 : options.length_unit.value_or(1);
   SnapshotRead read;
   // A mass in a file whose lengths are in another unit than metres is in some unit of its own.
-  const bool use_mass = raw.has_mass && unit == 1;
+  const bool use_mass = raw.has_mass && !raw.unknown_mass_unit && unit == 1;
   if (!use_mass)
     read.notes.push_back(fmt::format("masses are those of spheres of {:g} kg/m3{}", options.density,
                                      raw.has_mass ? "; the unit of the file's own is not known" : ""));

@@ -28,13 +28,13 @@ struct SnapshotRead {
 };
 
 /// Reads CSV (columns x, y, z, diameter or radius, optional mass, id, dump; a unit in the header as `x_mm` or
-/// `x [mm]`), a text dump of LAMMPS or LIGGGHTS, extended XYZ (OVITO, and particles.xyz of a run), a VTK file
-/// (POLYDATA or UNSTRUCTURED_GRID with a radius or diameter of the points; legacy, ASCII or binary, or XML,
-/// any encoding, plain or compressed by zlib), or a trajectory of scree (particles.h5). The format is told by
-/// the content; a byte order mark before it is passed over. Throws FileError (input_text.h): no radius, a
-/// radius and a diameter that contradict each other, two columns of one meaning, no grains, a value that is
-/// no finite number, an id or dump that is no integer, a diameter or mass that is not above 0, a grain
-/// farther away than 1e6 m, an id twice, a frame that is not there.
+/// `x [mm]`), a text dump of LAMMPS or LIGGGHTS, extended XYZ (OVITO, and particles.xyz of a run), text of
+/// YADE, a VTK file (POLYDATA or UNSTRUCTURED_GRID with a radius or diameter of the points; legacy, ASCII or
+/// binary, or XML, any encoding, plain or compressed by zlib), or a trajectory of scree (particles.h5). The
+/// format is told by the content; a byte order mark before it is passed over. Throws FileError
+/// (input_text.h): no radius, a radius and a diameter that contradict each other, two columns of one meaning,
+/// no grains, a value that is no finite number, an id or dump that is no integer, a diameter or mass that is
+/// not above 0, a grain farther away than 1e6 m, an id twice, a frame that is not there.
 SnapshotRead read_snapshot(const std::filesystem::path& file, const SnapshotOptions& options);
 
 }  // namespace scree

@@ -66,4 +66,14 @@ double rock_under(const std::vector<Grain>& grains, double x, double y, const Ve
   return lift;
 }
 
+double rock_in(const std::vector<Grain>& grains, const std::vector<Eigen::AlignedBox3d>& boxes) {
+  double mass = 0;
+  for (const Grain& grain : grains)
+    if (std::any_of(boxes.begin(), boxes.end(), [&](const Eigen::AlignedBox3d& box) {
+          return box.exteriorDistance(grain.position) < 0.5 * grain.diameter;
+        }))
+      mass += grain.mass;
+  return mass;
+}
+
 }  // namespace scree

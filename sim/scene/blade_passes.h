@@ -1,5 +1,6 @@
 #pragma once
 // Where a blade without side walls passes next.
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "sim/io/mesh.h"
@@ -33,5 +34,8 @@ BladePass next_pass(const std::vector<Grain>& grains, const BladeReach& blade, d
 /// How far a load must be raised above the ground (height `ground`, m) to lie on what is there: up to the
 /// highest rock below its box, whose front is at x, with its middle at y.
 double rock_under(const std::vector<Grain>& grains, double x, double y, const Vec3& box, double ground);
+
+/// Mass (kg) of the grains that reach into one of these boxes.
+double rock_in(const std::vector<Grain>& grains, const std::vector<Eigen::AlignedBox3d>& boxes);
 
 }  // namespace scree

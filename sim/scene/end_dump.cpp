@@ -24,24 +24,6 @@ Pose truck_pose(const EndDump& e, double y, double tilt_deg) {
   return {{-e.truck.setback, y, e.bench.height + e.truck.drop_height}, tilt(tilt_deg)};
 }
 
-// The tailgate hangs from its upper edge, plumb, whatever the tilt of the bed.
-Pose hanging_gate(const EndDump& e, double y, double tilt_deg) {
-  const Vec3 hinge(0, 0, e.truck.load_box.z());
-  Pose gate;
-  gate.rotation = tilt(0);
-  gate.position = truck_pose(e, y, tilt_deg).to_world(hinge) - gate.rotation * hinge;
-  return gate;
-}
-
-// The gate while the bed is hoisted.
-Motion swinging_gate(const EndDump& e, double y, double start, double seconds) {
-  constexpr int kSteps = 20;
-  std::vector<Motion::Key> keys;
-  for (int k = 0; k <= kSteps; ++k)
-    keys.push_back({start + seconds * k / kSteps, hanging_gate(e, y, e.truck.tilt_deg * k / kSteps)});
-  return Motion(std::move(keys));
-}
-
 // What lies in the bed, up to `height` (m) over its floor.
 auto in_bed(const Pose& bed, const Vec3& box, double height) {
   return [=](const Vec3& place) {
@@ -104,16 +86,16 @@ RunOutcome run_end_dump(const Scenario& scenario, const EndDump& e, std::uint64_
     if (!stage.advance(e.truck.settle_s, "settling", share, share + 0.1 * part)) return stage.finish();
     for (const int wall : walls) world.remove_mesh(wall);
 
+    // Beds of mining trucks are open behind: the gate holds the load until it has settled, no longer.
+    world.remove_mesh(gate);
     double emptied = share + 0.1 * part;
     if (e.truck.release == Release::open_gate) {
-      world.remove_mesh(gate);
       if (const double speed = stage.changes().release_speed; speed > 0)
         stage.push_load(pose.rotation * Vec3(speed, 0, 0));
     } else {
       const double start = world.time(), seconds = e.truck.tilt_deg / e.truck.hoist_rate_deg;
       world.set_mesh_motion(bed,
                             Motion({{start, pose}, {start + seconds, truck_pose(e, y, e.truck.tilt_deg)}}));
-      world.set_mesh_motion(gate, swinging_gate(e, y, start, seconds));
       emptied = share + 0.6 * part;
       if (!stage.advance(seconds + kHoistPause, "hoisting", share + 0.1 * part, emptied))
         return stage.finish();
@@ -123,7 +105,6 @@ RunOutcome run_end_dump(const Scenario& scenario, const EndDump& e, std::uint64_
     const Departure truck{
         bed,           tilted, Vec3(-way_off(e), 0, 0),
         kAcceleration, kSpeed, in_bed(tilted, e.truck.load_box, std::max(height, e.truck.load_box.z()))};
-    if (e.truck.release == Release::hoist) world.remove_mesh(gate);  // rigid, it would take the heap with it
     if (!stage.leave_with_tool(truck, share + 0.95 * part, share + 0.95 * part)) return stage.finish();
     world.remove_mesh(bed);
     if (!stage.advance(kBedLeaves, "truck leaves", share + 0.95 * part, share + part)) return stage.finish();

@@ -2,7 +2,8 @@
 //
 // With side walls, as in the thesis, a load lies on the bench top between them, the blade behind it and a
 // gate before it. It settles, the gate opens, the blade advances over the crest, up to which the walls reach.
-// On a base layer load and blade stand on the balls.
+// On a base layer load and blade stand on the balls. Where rock of earlier loads stands, the load lies on it;
+// blade and walls are put into it, which the run's notes say.
 //
 // Without side walls a load falls on the bench top and becomes a heap. The blade cuts at one height after
 // another. Each pass begins behind all rock of its lane and goes to the crest; what spills past the blade's
@@ -54,18 +55,27 @@ class Pushing {
     Pose behind = box, over = box;
     behind.position.x() -= e_.load_box.x();
     over.position.x() = e_.blade.overshoot;
-    const int blade = world_.add_mesh(mesh_, surface_, Motion::fixed(behind));
+    std::vector<Eigen::AlignedBox3d> places;
+    const auto put = [&](TriangleMesh mesh, const Pose& pose) {
+      Eigen::AlignedBox3d& place = places.emplace_back();
+      for (const Vec3& vertex : mesh.vertices) place.extend(pose.to_world(vertex));
+      return world_.add_mesh(std::move(mesh), surface_, Motion::fixed(pose));
+    };
+    const double lift = height_under(box), height = load_height + lift;
+    const int blade = put(mesh_, behind);
     std::vector<int> sides;
-    for (TriangleMesh& wall : walls(e_.load_box, load_height, -box.position.x()))
-      sides.push_back(world_.add_mesh(std::move(wall), surface_, Motion::fixed(box)));
+    for (TriangleMesh& wall : walls(e_.load_box, height, -box.position.x()))
+      sides.push_back(put(std::move(wall), box));
     // What stands higher than the box is held from behind until it has settled.
     const double h = 0.5 * e_.load_box.y() + kWall;
-    const int guard = load_height > e_.load_box.z()
-                          ? world_.add_mesh(make_box({-e_.load_box.x() - kWall, -h, e_.load_box.z()},
-                                                     {-e_.load_box.x(), h, load_height + 1.0}),
-                                            surface_, Motion::fixed(box))
-                          : -1;
-    stage_.add_load();
+    int guard = -1;
+    if (height > e_.load_box.z())
+      guard =
+          put(make_box({-e_.load_box.x() - kWall, -h, e_.load_box.z()}, {-e_.load_box.x(), h, height + 1.0}),
+              box);
+    most_cut_ =
+        std::max(most_cut_, stage_.observe([&] { return rock_in(world_.snapshot().grains, places); }));
+    stage_.add_load(lift);
     if (!stage_.advance(e_.settle_s, "settling", part.at(0), part.at(0.05))) return false;
     if (guard >= 0) world_.remove_mesh(guard);
     world_.remove_mesh(sides.back());
@@ -80,9 +90,7 @@ class Pushing {
   }
 
   bool lay_heap(const Pose& box, const Part& part) {
-    stage_.add_load(stage_.observe([&] {
-      return rock_under(world_.snapshot().grains, box.position.x(), box.position.y(), e_.load_box, ground_);
-    }));
+    stage_.add_load(height_under(box));
     return stage_.advance_to_rest("dumping", part.at(0), part.at(1));
   }
 
@@ -117,8 +125,17 @@ class Pushing {
 
   // Largest share of what was pushed that was left above the edge when the passes ended.
   double largest_left() const { return largest_left_; }
+  // Most rock of earlier loads that blade and walls were put into for one load, kg.
+  double most_cut() const { return most_cut_; }
 
  private:
+  // Of the rock that stands where a load is to lie, m over the ground.
+  double height_under(const Pose& box) {
+    return stage_.observe([&] {
+      return rock_under(world_.snapshot().grains, box.position.x(), box.position.y(), e_.load_box, ground_);
+    });
+  }
+
   bool pass_once(const BladePass& pass, double edge, const Part& part) {
     Pose behind, over;
     behind.position = {pass.start, pass.y, edge};
@@ -138,7 +155,7 @@ class Pushing {
   double ground_;  // what load and blade stand on, m
   TriangleMesh mesh_;
   Surface surface_;
-  double largest_left_ = 0;
+  double largest_left_ = 0, most_cut_ = 0;
 };
 
 }  // namespace
@@ -187,6 +204,11 @@ RunOutcome run_push_dump(const Scenario& scenario, const PushDump& e, std::uint6
     }
     stage.dump_done(dump, e.dumps);
   }
+  if (pushing.most_cut() > 0)
+    stage.note(fmt::format(
+        "seed {}: blade and side walls were put into rock of earlier loads, up to {:.3g} t of it for one "
+        "load, and press it aside",
+        seed, pushing.most_cut() / 1000));
   if (pushing.largest_left() > e.blade.left_share)
     stage.note(
         fmt::format("seed {}: when the passes ended, up to {:.0f} % of what was pushed lay on the bench "

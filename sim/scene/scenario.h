@@ -52,8 +52,8 @@ struct BenchSpec {
 
 enum class Release { open_gate, hoist };
 
-/// Truck bed and tailgate. Local frame: origin at the middle of the discharge lip on the bed's floor, bed
-/// along -x, z up.
+/// Truck bed and the gate behind which its load settles. Local frame: origin at the middle of the discharge
+/// lip on the bed's floor, bed along -x, z up.
 struct TruckSpec {
   std::filesystem::path bed_mesh, gate_mesh;
   double scale = 1.0;
@@ -148,7 +148,8 @@ struct DropTest {
 struct StopRule {
   double speed = 0.1;  ///< m/s
   double moving_mass_share = 0.01;
-  double min_time = 1.0;  ///< s after the release
+  double min_time = 1.0;  ///< s after the release; a load that has not moved yet is at rest after the default
+                          ///< at the earliest
   double max_time = 60;   ///< s after the release; reaching it is reported
 };
 

@@ -72,14 +72,15 @@ Fields keys(TruckSpec& t) {
       {"bed_mesh", MeshFile{&t.bed_mesh, "meshes/truck_bed.stl", &t.scale},
        "Mesh of the truck bed; origin at the middle of the discharge lip, bed along -x, z up."},
       {"gate_mesh", MeshFile{&t.gate_mesh, "meshes/truck_gate.stl", &t.scale},
-       "Mesh of the tailgate, same frame."},
+       "Mesh of the gate that holds the load while it settles, same frame; it is taken away then."},
       {"mesh_scale", Number{&t.scale, "m", kScale}, kScaleDoc},
       {"load_box_m", Vector{&t.load_box, kMetre, {0.1, 50}}, "Inner length, width and height of the bed."},
       {"tilt_deg", Number{&t.tilt_deg, kDegree, {0, 80}}, "Final tilt of the bed."},
       {"drop_height_m", Number{&t.drop_height, kMetre, {0, 50}}, "Height of the lip above the crest."},
       {"setback_m", Number{&t.setback, kMetre, {-20, 50}}, "Distance of the lip behind the crest."},
       {"release", choice(t.release, {"open_gate", "hoist"}),
-       "open_gate: the tilted bed's gate opens at once; hoist: the bed tilts with the gate open."},
+       "open_gate: the gate of a bed that is tilted already opens; hoist: it opens first, then the bed "
+       "tilts."},
       {"hoist_rate_deg_per_s", Number{&t.hoist_rate_deg, "degrees/s", {0.1, 90}},
        "Speed of the tilt (hoist only)."},
       {"settle_s", Number{&t.settle_s, kSecond, {0, 60}}, "Time the load settles behind the closed gate."},
@@ -225,7 +226,8 @@ Fields keys(Keyframe& k) {
 Fields keys(ToolSpec& t) {
   return {
       {"name", Text{&t.name, {1, 100}}, "Name of the tool, of its own.", true},
-      {"mesh", MeshFile{&t.mesh, "", &t.scale}, "Mesh of the tool: STL, OBJ, PLY, glTF or GLB.", true},
+      {"mesh", MeshFile{&t.mesh, "", &t.scale}, "Mesh of the tool: STL, OBJ, PLY (z up), glTF or GLB (y up).",
+       true},
       {"mesh_scale", Number{&t.scale, "m", kScale}, kScaleDoc},
       {"mu", NumberOr{&t.mu, kFriction, kRock}, kMuDoc},
       {"mu_r", NumberOr{&t.mu_r, kFriction, kRock}, kMuRDoc},
@@ -243,7 +245,8 @@ Fields keys(StopRule& s) {
       {"speed_m_per_s", Number{&s.speed, "m/s", {1e-6, 10}}, "A grain faster than this is moving."},
       {"moving_mass_share", Number{&s.moving_mass_share, kNone, {0, 1, true, true}},
        "The load is at rest when less than this share of its mass is moving."},
-      {"min_time_s", Number{&s.min_time, kSecond, {0, 1e5}}, "Least time after the release."},
+      {"min_time_s", Number{&s.min_time, kSecond, {0, 1e5}},
+       "Least time after the release. A load that has not moved yet is waited for at least 1 s."},
       {"max_time_s", Number{&s.max_time, kSecond, {0, 1e5, true, false}},
        "Most time after the release; reaching it is reported."},
   };

@@ -224,16 +224,18 @@ bool Stage::advance(double seconds, const char* stage, double share_now, double 
 bool Stage::advance_to_rest(const char* stage, double share_now, double share_then) {
   const StopRule& stop = scenario_.stop;
   const double start = world_->time();
+  bool has_moved = false;
   while (true) {
     const double passed = world_->time() - start;
     // The share is of the load's mass, so that a growing pile does not hide that a load still moves.
     progress_.moving_share = observe([&] {
-      double mass = 0;
-      for (int i = 0; i < world_->spheres().movable; ++i)
-        if (!world_->spheres().lost[i]) mass += world_->spheres().velocity[i].w;
-      return load_mass_ > 0 ? world_->moving_mass_share(stop.speed) * mass / load_mass_ : 0.0;
+      return load_mass_ > 0 ? world_->moving_mass_share(stop.speed) * world_->mass() / load_mass_ : 0.0;
     });
-    if (passed >= stop.min_time && progress_.moving_share < stop.moving_mass_share) return true;
+    const bool still = progress_.moving_share < stop.moving_mass_share;
+    has_moved = has_moved || !still;
+    // What has just been released is still: it has not come to rest.
+    const double least = has_moved ? stop.min_time : std::max(stop.min_time, StopRule().min_time);
+    if (still && passed >= std::min(least, stop.max_time)) return true;
     if (passed >= stop.max_time) {
       outcome_.at_rest = false;
       outcome_.notes.push_back(

@@ -1,11 +1,11 @@
 #pragma once
 // Notices a run that makes energy out of nothing, as an explicit scheme does when its step is too long.
 //
-// Over an interval, kinetic and elastic energy of the spheres that are awake may grow by no more than what
-// they lost in height, what tools did to them, and what contacts that began in the interval, or those of
-// spheres that woke, brought with them. Friction and damping only take away. The limit is twice that:
-// velocities are half a step away from places, and single impacts show it; a step that is too long doubles
-// the energy every few steps.
+// Over an interval, kinetic and elastic energy of the spheres that are awake, with what friction and local
+// damping took of it, may grow by no more than what they lost in height, what tools did to them, and what
+// contacts that began in the interval, or those of spheres that woke, brought with them. The limit is twice
+// that: velocities are half a step away from places, and single impacts show it; a step that is too long
+// doubles the energy every few steps, or, where friction bounds the motion, feeds friction.
 #include <stdexcept>
 
 namespace scree {
@@ -36,8 +36,10 @@ class EnergyWatch {
   /// Tools did this work, or contacts began with this energy.
   void supply(double energy) { supplied_ += energy; }
 
-  /// Compares with the check before. Throws BlowUp.
-  void check(const AwakeEnergy& now, double time);
+  /// Compares with the check before; `lost`: what friction and local damping have taken since the run began,
+  /// J. Not what dashpots have: they act on the velocity of half a step ago, and may take most of it in one.
+  /// Throws BlowUp.
+  void check(const AwakeEnergy& now, double lost, double time);
 
   /// For saving and going on: world_state.cpp.
   template <class Stream>
@@ -47,6 +49,7 @@ class EnergyWatch {
   bool known_ = false;
   AwakeEnergy before_;
   double supplied_ = 0;
+  double lost_before_ = 0;
 };
 
 }  // namespace scree

@@ -241,7 +241,7 @@ Snapshot RockWorld::snapshot() const {
   Snapshot shot;
   shot.time = time_;
   for (int i = 0; i < spheres_.size(); ++i) {
-    if (fixed_[i] || spheres_.lost[i] || !spheres_.leads(i)) continue;
+    if (!is_rock(i) || !spheres_.leads(i)) continue;
     const int other = spheres_.partner.empty() ? -1 : spheres_.partner[i];
     if (other < 0)
       shot.grains.push_back({spheres_.id[i], spheres_.place[i].vec(), spheres_.velocity[i].vec(),
@@ -267,21 +267,25 @@ std::vector<Grain> RockWorld::fixed_balls() const {
   return balls;
 }
 
+double RockWorld::mass() const {
+  double mass = 0;
+  for (int i = 0; i < spheres_.size(); ++i)
+    if (is_rock(i)) mass += spheres_.velocity[i].w;
+  return mass;
+}
+
 double RockWorld::moving_mass_share(double speed) const {
-  double moving = 0, all = 0;
-  for (int i = 0; i < spheres_.size(); ++i) {
-    if (fixed_[i] || spheres_.lost[i]) continue;
-    const double mass = spheres_.velocity[i].w;
-    all += mass;
-    if (speed_of(i) > speed) moving += mass;
-  }
+  double moving = 0;
+  for (int i = 0; i < spheres_.size(); ++i)
+    if (is_rock(i) && speed_of(i) > speed) moving += spheres_.velocity[i].w;
+  const double all = mass();
   return all > 0 ? moving / all : 0.0;
 }
 
 Energy RockWorld::energy() const {
   Energy e;
   for (int i = 0; i < spheres_.size(); ++i) {
-    if (fixed_[i] || spheres_.lost[i]) continue;
+    if (!is_rock(i)) continue;
     e.kinetic += kinetic_energy(i);
     e.potential += gravity_energy(i);
   }
@@ -341,8 +345,8 @@ void RockWorld::leave(int index) {
 
 std::vector<int> RockWorld::leaders(const std::function<bool(const Vec3& place)>& inside) const {
   std::vector<int> found;
-  for (int i = 0; i < spheres_.movable; ++i) {
-    if (fixed_[i] || spheres_.lost[i] || !spheres_.leads(i)) continue;
+  for (int i = 0; i < spheres_.size(); ++i) {
+    if (!is_rock(i) || !spheres_.leads(i)) continue;
     const int other = spheres_.partner.empty() ? -1 : spheres_.partner[i];
     const Vec3 place = spheres_.place[i].vec();
     if (inside(other < 0 ? place : Vec3(0.5 * (place + spheres_.place[other].vec())))) found.push_back(i);

@@ -135,6 +135,8 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   Snapshot snapshot() const;
   /// Fixed balls, by id.
   std::vector<Grain> fixed_balls() const;
+  /// Mass of the rock in the model, kg.
+  double mass() const;
   /// Share of the mass in the model that moves faster than `speed` (m/s).
   double moving_mass_share(double speed) const;
   /// Speed (m/s) of a movable sphere (its index) as moving_mass_share() takes it.
@@ -163,6 +165,9 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   void set_radius(int sphere, double radius);
   /// Makes the Bullet bodies that are not there yet. The explicit engine needs none to step.
   void make_bodies();
+  /// Whether a sphere (its index) is rock that is in the model: not a fixed ball, and not lost. Where fixed
+  /// balls stand among the others is the engine's choice.
+  bool is_rock(int sphere) const { return !fixed_[sphere] && !spheres_.lost[sphere]; }
   double kinetic_energy(int sphere) const;  ///< J
   double gravity_energy(int sphere) const;  ///< potential, against the origin, J
   virtual void sphere_pushed(int) {}

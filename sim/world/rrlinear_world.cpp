@@ -63,7 +63,6 @@ int RrlinearWorld::stepSimulation(btScalar span, int, btScalar) {
 }
 
 void RrlinearWorld::sphere_pushed(int index) {
-  if (changed_) return;  // it has not been sorted in yet, and is awake
   energy_watch_.restart();
   disturbed_.assign(1, index);
   wake(disturbed_);
@@ -74,7 +73,8 @@ void RrlinearWorld::sphere_lost(int index) {
   if (!changed_) {  // those that lay on it
     std::vector<int> left_alone;
     for (const Neighbour& n : pairs_.neighbours(index))
-      if (n.touching() && n.sphere < spheres_.movable) left_alone.push_back(n.sphere);
+      if (n.touching() && n.sphere < spheres_.movable && !spheres_.lost[n.sphere])
+        left_alone.push_back(n.sphere);
     wake(left_alone);
     for (const Neighbour& n : pairs_.neighbours(index))
       if (!spheres_.lost[n.sphere] && n.touching()) account_.lost_other += held_by(index, n);
@@ -182,6 +182,7 @@ void RrlinearWorld::prepare() {
   blocks_due_ = true;
   dt_ = stable_step();
   steps_to_check_ = 1;  // contacts have their forces then
+  checks_to_energy_ = 1;
   energy_watch_.restart();
   if (before_fragments_) account_.fragments += energy_by_places() - *before_fragments_;
   before_fragments_.reset();
@@ -405,7 +406,7 @@ void RrlinearWorld::step(double dt) {
     account_.pressed += work.pressed;
     momentum += work.momentum;
     repair_due_ = repair_due_ || work.left_ball;
-    energy_watch_.supply(work.supplied);
+    energy_watch_.supply(work.supplied + std::max(work.pressed, 0.0));
     statistics_.largest_overlap_ratio = std::max(statistics_.largest_overlap_ratio, work.overlap_ratio);
     disturbed_.insert(disturbed_.end(), work.disturbed.begin(), work.disturbed.end());
   }
@@ -506,28 +507,34 @@ double RrlinearWorld::own_step2(int i) const {
   const bool damped = law_.has_dashpots();
   Vec3 shift = Vec3::Zero(), turn = Vec3::Zero();  // N/m, N m/rad
   Vec3 drag = Vec3::Zero(), brake = Vec3::Zero();  // N s/m, N m s/rad
-  const auto add = [&](const ContactStiffness& k, const Vec3& normal, double reduced_mass) {
+  const auto add = [&](const ContactStiffness& k, const Vec3& normal, double overlap, double reduced_mass) {
     const Vec3 along = normal.cwiseAbs2(), across = Vec3::Ones() - along;
+    // The contact halves the overlap: of a small sphere pressed deep into a block it lies beyond the far
+    // side.
+    const double arm = std::max(a.w, 0.5 * overlap - a.w);
     shift += k.kn * along + k.ks * across;
-    turn += (k.ks * a.w * a.w + k.kr) * across;
+    turn += (k.ks * arm * arm + k.kr) * across;
     if (law_.mu_t > 0) turn += k.kr * along;
     if (!damped) return;
     const double viscosity = shear_dashpot(law_, k, reduced_mass);
     drag += normal_dashpot(law_, k, reduced_mass) * along + viscosity * across;
-    brake += viscosity * a.w * a.w * across;
+    brake += viscosity * arm * arm * across;
   };
   for (const Neighbour& n : pairs_.neighbours(i)) {
     const Quad& b = spheres_.place[n.sphere];
     const Vec3 d = b.vec() - a.vec();
     const double reach = a.w + b.w + kNearGap * std::min(a.w, b.w), d2 = d.squaredNorm();
-    if (d2 < reach * reach && d2 > 0)
-      add(ball_ball(law_, a.w, b.w), d / std::sqrt(d2), damped ? spheres_.reduced_mass(i, n.sphere) : 0);
+    if (d2 >= reach * reach || !(d2 > 0)) continue;
+    const double distance = std::sqrt(d2);
+    add(ball_ball(law_, a.w, b.w), d / distance, a.w + b.w - distance,
+        damped ? spheres_.reduced_mass(i, n.sphere) : 0);
   }
   if (facets_.any(i)) {
     const ContactStiffness wall = ball_facet(law_, a.w);
     const double mass = spheres_.grain_mass(i);
-    for (int k = 0; k < facets_.count(i); ++k) add(wall, facets_.contact(i, k).normal, mass);
-    if (facets_.count(i) == 0) add(wall, Vec3(0, 0, 1), mass);
+    // Of these the arm is never longer than the radius (mesh_forces).
+    for (int k = 0; k < facets_.count(i); ++k) add(wall, facets_.contact(i, k).normal, 0, mass);
+    if (facets_.count(i) == 0) add(wall, Vec3(0, 0, 1), 0, mass);
   }
   const double mass = spheres_.velocity[i].w, inertia = spheres_.spin[i].w;
   const double free = free_step2(a.w, mass, inertia);
@@ -630,7 +637,7 @@ void RrlinearWorld::check_energy() {
     now.potential += work.energy.potential;
     now.scale += work.energy.scale;
   }
-  energy_watch_.check(now, time_);
+  energy_watch_.check(now, account_.losses.total() - account_.losses.dashpots, time_);
 }
 
 Energy RrlinearWorld::energy() const {

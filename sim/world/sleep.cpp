@@ -65,8 +65,9 @@ void Sleep::renumber(const std::vector<int>& order, Spheres& s, PairList& pairs,
   tolerance2_.swap(tolerance2);
 }
 
-void Sleep::lose(int i, const Spheres& s) {
+void Sleep::lose(int i, Spheres& s) {
   if (i < static_cast<int>(quiet_windows_.size()) && s.asleep[i]) --asleep_;
+  s.asleep[i] = 0;
   std::erase(awake_, i);
 }
 

@@ -35,7 +35,7 @@ class Sleep {
   void renumber(const std::vector<int>& order, Spheres& spheres, PairList& pairs,
                 const std::vector<std::uint8_t>& stay_awake, double time, double gravity);
   /// A sphere has left the model.
-  void lose(int i, const Spheres& spheres);
+  void lose(int i, Spheres& spheres);
 
   /// At the end of a window puts quiet spheres to sleep. `sums` hold what acted on each in the last step.
   /// `stay_awake[i]`: must not sleep.

@@ -18,7 +18,8 @@ struct NewSphere {
   Vec3 axis = Vec3::Zero();      ///< of a clump (clumps.h), a unit vector; zero: along x
 };
 
-/// Movable spheres stand first (index below `movable`), fixed balls behind them.
+/// With sort_spheres(), as RrlinearWorld does, movable spheres stand first (index below `movable`) and fixed
+/// balls behind them; without it all stand as they came.
 struct Spheres {
   std::vector<Quad> place;     ///< position m; w: radius m
   std::vector<Quad> velocity;  ///< m/s; w: mass kg

@@ -156,6 +156,12 @@ std::string ply(const TriangleMesh& mesh) {
   return text.str();
 }
 
+/// As glTF has it, whose y is up.
+TriangleMesh y_up(TriangleMesh mesh) {
+  for (Vec3& v : mesh.vertices) v = Vec3(v.x(), v.z(), -v.y());
+  return mesh;
+}
+
 /// Positions as floats, then indices as 16 bit.
 std::string gltf_buffer(const TriangleMesh& mesh) {
   std::string bytes;
@@ -301,13 +307,13 @@ TEST_F(MeshFile, BoxIsClosedAndLooksOutwards) {
 
 TEST_F(MeshFile, AllFormatsGiveTheSameCube) {
   const std::string uri = R"("uri": "cube.bin", )";
-  write("cube.bin", gltf_buffer(cube()));
+  write("cube.bin", gltf_buffer(y_up(cube())));
   expect_cube(load_mesh(write("binary.stl", cube())));
   expect_cube(load_mesh(write("ascii.stl", ascii_stl(cube()))));
   expect_cube(load_mesh(write("cube.obj", obj(cube()))));
   expect_cube(load_mesh(write("cube.ply", ply(cube()))));
-  expect_cube(load_mesh(write("cube.gltf", gltf(cube(), uri, ""))));
-  expect_cube(load_mesh(write("cube.glb", glb(cube()))));
+  expect_cube(load_mesh(write("cube.gltf", gltf(y_up(cube()), uri, ""))));
+  expect_cube(load_mesh(write("cube.glb", glb(y_up(cube())))));
   expect_cube(load_mesh(write("UPPER.STL", cube())));
 }
 
@@ -319,16 +325,30 @@ TEST_F(MeshFile, QuadsBecomeTriangles) {
 }
 
 TEST_F(MeshFile, NodeTransformsOfGltfAreApplied) {
-  write("cube.bin", gltf_buffer(cube()));
+  write("cube.bin", gltf_buffer(y_up(cube())));
   const std::string uri = R"("uri": "cube.bin", )";
-  const LoadedMesh moved =
-      load_mesh(write("moved.gltf", gltf(cube(), uri, R"("translation": [10, 0, 0], "scale": [2, 1, 1], )")));
+  const LoadedMesh moved = load_mesh(
+      write("moved.gltf", gltf(y_up(cube()), uri, R"("translation": [10, 0, 0], "scale": [2, 1, 1], )")));
   EXPECT_THAT(moved.report.errors, IsEmpty());
   expect_box(moved.mesh, Vec3(8, 0, 2), Vec3(12, 2, 4));
   // A mirror image still looks outwards, and nothing had to be repaired.
-  const LoadedMesh mirrored = load_mesh(write("mirror.gltf", gltf(cube(), uri, R"("scale": [-1, 1, 1], )")));
+  const LoadedMesh mirrored =
+      load_mesh(write("mirror.gltf", gltf(y_up(cube()), uri, R"("scale": [-1, 1, 1], )")));
   EXPECT_THAT(mirrored.report.warnings, IsEmpty());
   EXPECT_DOUBLE_EQ(volume(mirrored.mesh), 8);
+}
+
+// glTF 2.0 defines y as up (section 3.4): a box 1 wide (x), 2 high (y) and 3 deep (z), which a node raises
+// by 5.
+TEST_F(MeshFile, GltfStandsUpright) {
+  const TriangleMesh box = make_box({0, 0, 0}, {1, 2, 3});
+  write("box.bin", gltf_buffer(box));
+  const LoadedMesh loaded =
+      load_mesh(write("box.gltf", gltf(box, R"("uri": "box.bin", )", R"("translation": [0, 5, 0], )")));
+  EXPECT_THAT(loaded.report.errors, IsEmpty());
+  expect_box(loaded.mesh, Vec3(0, -3, 5), Vec3(1, 0, 7));
+  EXPECT_NEAR(volume(loaded.mesh), 6, 1e-5);
+  expect_box(load_mesh(write("box.glb", glb(box))).mesh, Vec3(0, -3, 0), Vec3(1, 0, 2));
 }
 
 TEST_F(MeshFile, ScaleIsMetresPerUnit) {
@@ -548,7 +568,8 @@ TEST_F(MeshFile, CutPlyFilesAreErrors) {
 }
 
 TEST_F(MeshFile, OnlyTheFormatOfTheExtensionIsTried) {
-  const std::string contents[] = {bytes_of(write("cube.stl", cube())), obj(cube()), ply(cube()), glb(cube())};
+  const std::string contents[] = {bytes_of(write("cube.stl", cube())), obj(cube()), ply(cube()),
+                                  glb(y_up(cube()))};
   const std::string extensions[] = {"stl", "obj", "ply", "glb"};
   for (int content = 0; content < 4; ++content) {
     for (int name = 0; name < 4; ++name) {

@@ -65,7 +65,9 @@ std::string lammps_frame(int step, double offset, const char* columns) {
 TEST_F(SnapshotReader, CsvNamesItsColumnsAndUnits) {
   expect_the_pile(read(csv("id,x,y,z,diameter,dump,mass")));
   expect_the_pile(read(csv("ID, X ,Y,Z,Diameter,Dump,Mass [kg]")));
-  expect_the_pile(read(csv("id,x_mm,y_mm,z_mm,d_mm,load,mass", 1000)));
+  expect_the_pile(read(csv("id,x_mm,y_mm,z_mm,d_mm,load,mass_kg", 1000)));
+  expect_the_pile(read(csv("id,pos_x,pos_y,pos_z,diameter,dump,mass")));
+  expect_the_pile(read(csv("id,pos_x_mm,pos_y_mm,pos_z_mm,diameter_mm,dump,mass [kg]", 1000)));
   expect_the_pile(read(csv("id,x [cm],y (cm),z_cm,diameter [cm],dump,mass_kg", 100)));
   SnapshotOptions millimetres;
   millimetres.length_unit = 1e-3;
@@ -81,6 +83,59 @@ TEST_F(SnapshotReader, CsvNamesItsColumnsAndUnits) {
   EXPECT_EQ(dumps.snapshot.grains[4].id, 14);
   EXPECT_FALSE(read("x,y,z,radius\n0,0,0,1\n").has_dumps);
   EXPECT_EQ(read("x;y;z;radius\n0,5;0;0;1,25\n").snapshot.grains[0].diameter, 2.5);
+}
+
+// A mass without a unit is in kilograms beside lengths in metres; beside others it may be anything.
+TEST_F(SnapshotReader, MassWithoutAUnitIsThatOfMetres) {
+  SnapshotOptions by_density, millimetres;
+  by_density.density = millimetres.density = 2000;
+  millimetres.length_unit = 1e-3;
+  // Masses of which none is what the pile has.
+  const auto other_masses = [&](const char* header, double length) {
+    std::string text = csv(header, length, false);
+    for (std::size_t at = text.find('\n'); (at = text.find('\n', at + 1)) != std::string::npos; at += 4)
+      text.insert(at, ",1e9");
+    return text;
+  };
+  const auto expect_masses_of_density = [&](const SnapshotRead& read) {
+    expect_the_pile(read);
+    EXPECT_THAT(read.notes, testing::ElementsAre(HasSubstr("the unit of the file's own is not known")));
+  };
+  expect_masses_of_density(read(other_masses("id,x,y,z,diameter,dump,mass", 1000), millimetres));
+  expect_masses_of_density(read(other_masses("id,x_mm,y_mm,z_mm,d_mm,dump,mass", 1000), by_density));
+  expect_the_pile(read(csv("id,x,y,z,diameter,dump,mass_kg", 1000), millimetres));
+  EXPECT_TRUE(read(csv("id,x,y,z,diameter,dump,mass")).notes.empty());
+}
+
+// Layouts of export.text and export.textExt of YADE.
+TEST_F(SnapshotReader, TextOfYade) {
+  const auto yade = [](const char* format, const char* comment, bool with_id, const char* behind) {
+    std::string text = fmt::format("#format {}\n{}", format, comment);
+    for (const Grain& g : pile())
+      text += fmt::format("{}{}\t{}\t{}\t{}{}\n", with_id ? fmt::format("{}\t", g.id) : "", g.position.x(),
+                          g.position.y(), g.position.z(), 0.5 * g.diameter, behind);
+    return text;
+  };
+  SnapshotOptions options;
+  options.density = 2000;
+  expect_the_pile(read(yade("x_y_z_r", "", false, ""), options));
+  expect_the_pile(read(yade("x_y_z_r_matId", "# a pile\n", false, "\t0"), options));
+  expect_the_pile(read(yade("x_y_z_r_attrs", "# x y z r a b\n", false, "\t1\tword"), options));
+  const SnapshotRead with_id = read(yade("id_x_y_z_r_matId", "", true, "\t0"), options);
+  expect_the_pile(with_id);
+  EXPECT_EQ(with_id.snapshot.grains[4].id, 14);
+  EXPECT_EQ(read("#format x_y_z_r\r\n0 0 0 500\r\n\r\n", {.length_unit = 1e-3, .density = 2760})
+                .snapshot.grains[0]
+                .diameter,
+            1);
+  EXPECT_THAT(error("#format jointedPM\n0 0 0 1\n"),
+              HasSubstr(":1: format 'jointedPM' does not name x, y, z and r"));
+  EXPECT_THAT(error("#format x_y_z_r\n0 0 0 1\n0 0 1\n"),
+              HasSubstr(":3: 3 values, the format has 4 columns"));
+  EXPECT_THAT(error("#format x_y_z_r\n0 0 0 1 5\n"), HasSubstr(":2: 5 values, the format has 4 columns"));
+  EXPECT_THAT(error("#format x_y_z_r\n0 0 0 one\n"), HasSubstr(":2: 'one' is no finite number"));
+  EXPECT_THAT(error("#format x_x_y_z_r\n0 0 0 0 1\n"), HasSubstr("two columns are 'x'"));
+  EXPECT_THAT(error("-0.0561\t0.1\t0.2\t0.3\n0\t0.1\t0.2\t0.3\n"), HasSubstr(":1: no header"));
 }
 
 TEST_F(SnapshotReader, FormatsAgree) {

@@ -88,6 +88,37 @@ TEST(PushDump, LoadsFollowOneAnotherAtTheirPoints) {
   EXPECT_NEAR(right / 20e3, 6, 1.5);
 }
 
+// Loads at one place: what stands there is under the next load, not within it, and what blade and walls cut
+// into is told.
+TEST(PushDump, LoadLiesOnWhatStandsThere) {
+  const Scenario scenario =
+      small_push({"experiment.dumps=2", "experiment.payload_t=60", "experiment.load_box_m=[8, 8, 4]"});
+  const auto& e = std::get<PushDump>(scenario.experiment);
+  const double ground = e.bench.height + 0.5 * e.bench.ball_diameter;
+  double stood = 0, lowest = 1e300;  // over the ground: rock of the first load, then rock of the second
+  std::size_t known = 0;
+  RunHooks hooks;
+  hooks.look = [&](const Snapshot& shot) {
+    const int dump = shot.grains.back().dump;
+    if (dump == 2 && shot.grains.size() > known) {
+      std::vector<Grain> first;
+      for (const Grain& grain : shot.grains)
+        if (grain.dump == 1)
+          first.push_back(grain);
+        else
+          lowest = std::min(lowest, grain.position.z() - 0.5 * grain.diameter - ground);
+      stood = rock_under(first, -e.distance, 0, e.load_box, ground);
+    }
+    known = shot.grains.size();
+  };
+  const RunOutcome outcome = run_scenario(scenario, 1, 1, hooks);
+  EXPECT_TRUE(outcome.at_rest);
+  EXPECT_GT(stood, 0.2);
+  EXPECT_GT(lowest, stood - 0.05);  // it has fallen for 0.1 s: g t^2 / 2
+  EXPECT_THAT(outcome.notes, testing::ElementsAre(testing::HasSubstr("put into rock of earlier loads")));
+  EXPECT_THAT(run_scenario(small_push(), 1, 1, {}).notes, testing::IsEmpty());
+}
+
 // A heap some way behind the crest, and a dozer blade of half its size (4 m wide, 1 m high).
 Scenario small_dozer(const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides{
@@ -190,6 +221,14 @@ TEST(BladePasses, TakeTheLaneWithTheMostRockFromBehindAllOfIt) {
   EXPECT_NEAR(pass.start, -15 - 0.5 - 0.5 - 0.1, 1e-12);
   EXPECT_EQ(next_pass(grains, blade, 10, 0, 3).mass, 0) << "a blade cannot leave the bench";
   EXPECT_EQ(next_pass(grains, blade, 20, 0, 20).mass, 0);
+}
+
+TEST(BladePasses, RockInBoxesIsCountedOnce) {
+  const std::vector<Grain> grains{grain_at({0.5, 0.5, 0.5}, 0.1, 1), grain_at({-0.4, 0.5, 0.5}, 1, 2),
+                                  grain_at({-0.6, 0.5, 0.5}, 1, 4)};
+  const Eigen::AlignedBox3d box(Vec3::Zero(), Vec3::Ones());
+  EXPECT_EQ(rock_in(grains, {box, box}), 3);
+  EXPECT_EQ(rock_in(grains, {}), 0);
 }
 
 TEST(BladePasses, LoadIsRaisedOntoWhatLiesBelowIt) {

@@ -207,7 +207,7 @@ const BadCase kBadCases[] = {
     {"KeyframeIsNumber", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump}\ntools: [{name: a, mesh: meshes/truck_bed.stl, keyframes: [3]}]\n",
      {"4:59: tools[0].keyframes[0]: a map of keys is expected, found '3'"}},
     {"ToolWithoutMesh", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump}\ntools: [{name: a, keyframes: [{time_s: 0}]}]\n",
-     {"4:9: 'tools[0].mesh' is missing: Mesh of the tool: STL, OBJ, PLY, glTF or GLB"}},
+     {"4:9: 'tools[0].mesh' is missing: Mesh of the tool: STL, OBJ, PLY (z up), glTF or GLB (y up)"}},
     {"ToolWithoutName", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump}\ntools: [{mesh: meshes/truck_bed.stl, keyframes: [{time_s: 0}]}]\n",
      {"4:9: 'tools[0].name' is missing: Name of the tool, of its own"}},
     {"ToolNamesEqual", "grading: CM0\nmaterial: {mu: 0.4, mu_r: 0.4}\nexperiment: {type: end_dump}\ntools:\n  - {name: a, mesh: meshes/truck_bed.stl, keyframes: [{time_s: 0}]}\n  - {name: a, mesh: meshes/truck_bed.stl, keyframes: [{time_s: 0}]}\n",

@@ -33,6 +33,31 @@ TEST(TimeStep, IsThatOfTheContactsOfASphere) {
   EXPECT_NEAR(world.statistics().time_step_max, expected, 1e-3 * expected);
 }
 
+// A small sphere that blocks press from all sides: the contact halves an overlap u, so that forces act on it
+// at a lever of u / 2 - r, longer than its radius from u = 4 r on.
+TEST(TimeStep, IsThatOfTheLeversOfDeepOverlaps) {
+  const double radius = 0.05, block = 1;
+  for (const double depth : {3.0, 6.0, 8.0, 10.0}) {  // overlap over the small radius
+    WorldSettings settings = weightless(0);
+    settings.fixed_time_step = 0;
+    settings.material = {};
+    settings.sleep = false;
+    RrlinearWorld world(settings);
+    std::vector<NewSphere> spheres{ball(Vec3::Zero(), radius, Vec3::Zero(), {1e-3, 2e-3, 3e-3})};
+    const double apart = block + radius - depth * radius, golden = std::numbers::phi;
+    for (int axis = 0; axis < 3; ++axis)  // an icosahedron
+      for (const double first : {-1.0, 1.0})
+        for (const double second : {-golden, golden}) {
+          Vec3 at = Vec3::Zero();
+          at[axis] = first, at[(axis + 1) % 3] = second;
+          spheres.push_back(fixed_ball(apart * at.normalized(), block));
+        }
+    world.add_spheres(spheres);
+    ASSERT_NO_THROW(world.advance_to(2)) << depth;
+    EXPECT_LT(std::abs(world.energy_balance()->relative_error()), 0.01) << depth;
+  }
+}
+
 // Restitution of a dashpot that never pulls (Schwager & Poeschel 2007, eq. 21), b its share of critical
 // damping.
 double restitution(double b) {

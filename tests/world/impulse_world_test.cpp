@@ -90,6 +90,30 @@ TEST(ImpulseWorld, FixedBallsStayAndCarry) {
   EXPECT_NEAR(world->snapshot().grains[0].position.z(), 2 * kRadius, 0.04 * kRadius);
 }
 
+// Balls of a base layer come first and stay there: rock is told from them by what it is, not by its place.
+TEST(ImpulseWorld, FixedBallsAreNoRock) {
+  WorldSettings settings;
+  const auto world = make_impulse_world(settings);
+  std::vector<NewSphere> base, rock;
+  for (int k = 0; k < 10; ++k) {
+    base.push_back(ball({2.0 * k, 0, 0}, kRadius));
+    base.back().fixed = true;
+    base.back().dump = 0;
+  }
+  for (int k = 0; k < 6; ++k) rock.push_back(ball({2.0 * k, 0, 2 * kRadius + 0.1}, kRadius));
+  world->add_spheres(base);
+  world->add_spheres(rock);
+  world->advance_to(0.1);
+  const double one = sphere_mass(settings.material, 2 * kRadius);
+  const auto everywhere = [](const Vec3&) { return true; };
+  EXPECT_NEAR(world->mass(), 6 * one, 1e-9 * one);
+  EXPECT_NEAR(world->mass_of(everywhere), 6 * one, 1e-9 * one);
+  EXPECT_EQ(world->moving_mass_share(0.1), 1) << "all fall";
+  EXPECT_NEAR(world->take_out([](const Vec3& place) { return place.x() < 3; }), 2 * one, 1e-9 * one);
+  EXPECT_NEAR(world->mass(), 4 * one, 1e-9 * one);
+  EXPECT_EQ(world->fixed_balls().size(), 10u);
+}
+
 // Bullet pairs what is nearer than 5 cm unless told otherwise: each of these with hundreds.
 TEST(ImpulseWorld, SmallSpheresArePairedWithTheirNeighboursAlone) {
   WorldSettings settings;

@@ -142,6 +142,34 @@ TEST(Sleep, SleeperOnWhatIsTakenOutWakes) {
   EXPECT_LT(left.front().position.z(), 1.5 * kRadius);
 }
 
+// Rock that slept on the floor is given a velocity in the moment in which a mesh elsewhere is taken away.
+TEST(Sleep, PushWakesWhileTheSceneChanges) {
+  Bench b({ball({0, 0, kRadius})});
+  const int other = b.world.add_mesh(make_box({5, 5, 0}, {6, 6, 1}), {0.4, 0.4}, Motion::fixed(Pose{}));
+  b.world.advance_to(10);
+  ASSERT_EQ(b.world.statistics().asleep, 1);
+  const double x = b.grain(0).position.x();
+  b.world.remove_mesh(other);
+  b.world.set_velocity(0, {2, 0, 0}, Vec3::Zero());
+  b.world.advance_to(10.1);
+  EXPECT_EQ(b.world.statistics().asleep, 0);
+  EXPECT_GT(b.grain(0).position.x() - x, 0.1);
+}
+
+// What has left the model does not come back when what it touched leaves it, too.
+TEST(Sleep, WhatIsTakenOutIsNotWoken) {
+  Bench b({ball({0, 0, kRadius}), ball({0, 0, 3 * kRadius}), ball({5, 0, kRadius})});
+  b.world.advance_to(10);
+  ASSERT_EQ(b.world.statistics().asleep, 3);
+  b.world.take_out([](const Vec3& place) { return place.x() < 1; });
+  b.world.advance_to(11);
+  EXPECT_EQ(b.world.statistics().asleep, 1);
+  EXPECT_EQ(b.world.snapshot().grains.size(), 1u);
+  for (int i = 0; i < b.world.spheres().size(); ++i)
+    if (b.world.spheres().lost[i])
+      EXPECT_TRUE(b.world.spheres().velocity[i].vec().isZero() && !b.world.spheres().asleep[i]) << i;
+}
+
 // A tool goes by a millimetre from it, for longer than a ball needs to fall asleep.
 TEST(Sleep, BallBesideAToolThatMovesStaysAwake) {
   Bench b({ball({0, 0, kRadius}), ball({0, 5, kRadius})});

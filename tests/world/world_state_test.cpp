@@ -193,7 +193,7 @@ TEST(SavedWorlds, HoldEveryMember) {
   EXPECT_EQ(sizeof(Spheres), 224u);
   EXPECT_EQ(sizeof(GrowingSphere), 16u);
   EXPECT_EQ(sizeof(AwakeEnergy), 32u);
-  EXPECT_EQ(sizeof(EnergyWatch), 48u);
+  EXPECT_EQ(sizeof(EnergyWatch), 56u);
   EXPECT_EQ(sizeof(ContactHistory), 64u);
   EXPECT_EQ(sizeof(MeshContact), 112u);
   EXPECT_EQ(sizeof(BodyState), 112u);
@@ -206,7 +206,7 @@ TEST(SavedWorlds, HoldEveryMember) {
   EXPECT_EQ(sizeof(BlockWork), 328u);
   EXPECT_EQ(sizeof(RockWorld) - sizeof(BulletParts) - sizeof(btDiscreteDynamicsWorld) - sizeof(WorldSettings),
             576u);
-  EXPECT_EQ(sizeof(RrlinearWorld) - sizeof(RockWorld) - sizeof(ContactLaw) - sizeof(Team), 1296u);
+  EXPECT_EQ(sizeof(RrlinearWorld) - sizeof(RockWorld) - sizeof(ContactLaw) - sizeof(Team), 1304u);
 }
 #endif
 

@@ -265,6 +265,36 @@ TEST(World, EnergyOutOfNothingIsABlowUp) {
   }
 }
 
+// Energy is looked at as soon as the scene has changed, not after it has had time to grow.
+TEST(World, EnergyOutOfNothingIsSeenFromTheChangeOfASceneOn) {
+  WorldSettings settings;
+  settings.material.local_damping = 0;
+  const double radius = 0.5,
+               mass = settings.material.density * 4.0 / 3 * std::numbers::pi * std::pow(radius, 3),
+               stiffness = std::numbers::pi * settings.material.effective_modulus * radius;
+  settings.fixed_time_step = 1.0005 * 2 * std::sqrt(mass / stiffness);
+  RrlinearWorld world(settings);
+  NewSphere base = ball({5, 0, 0}, radius);
+  base.fixed = true;
+  world.add_spheres({base});
+  add_floor(world);
+  world.advance_to(22 * settings.fixed_time_step);
+  world.add_spheres({ball({0, 0, radius - 1.01 * mass * 9.81 / stiffness}, radius)});
+  EXPECT_THROW(world.advance_to(152 * settings.fixed_time_step), BlowUp);
+}
+
+// Motion that friction bounds does not grow: what a step that is too long makes, friction takes.
+TEST(World, EnergyOutOfNothingThatFrictionTakesIsABlowUp) {
+  EnergyWatch watch;
+  AwakeEnergy same;
+  same.kinetic = 1;
+  watch.check(same, 5, 0);
+  EXPECT_NO_THROW(watch.check(same, 5.9, 1));
+  watch.supply(10);
+  EXPECT_NO_THROW(watch.check(same, 15.9, 2));
+  EXPECT_THROW(watch.check(same, 17.9, 3), BlowUp);
+}
+
 TEST(World, EnergyCanBeAskedBeforeTheFirstStep) {
   WorldSettings settings;
   RrlinearWorld world(settings);
