@@ -162,7 +162,7 @@ void write_image_report(const ImageReport& report, const fs::path& folder) {
         number_text(1e4 * report.settings.detection_area), number_text(100 * photo.gradings[0].d50),
         decimals_text(photo.gradings[0].cu, 1), decimals_text(photo.gradings[0].cc, 2),
         number_text(100 * found.scale.at(found.region.middle_y())),
-        report.settings.m_per_px ? "" : fmt::format(", from {} target(s)", found.targets.size()),
+        report.settings.m_per_px ? "" : ", from " + counted_text(found.targets.size(), "target"),
         count_text(found.below_limit), count_text(static_cast<double>(found.cut.size())));
     if (!found.notes.empty()) {
       body += "<div class=\"notes\"><ul>";

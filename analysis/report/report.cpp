@@ -225,8 +225,8 @@ std::string facts(const RunResult& result) {
   fact("engine", html_escaped(result.engine));
   fact("seeds", seeds);
   for (const std::string& effect : result.effects) fact("effect", html_escaped(effect));
-  fact("rock",
-       fmt::format("{} spheres, {} t{}", count_text(particles / n), number_text(mass / n / 1000), each));
+  fact("rock", fmt::format("{} {}, {} t{}", count_text(particles / n), particles == n ? "sphere" : "spheres",
+                           number_text(mass / n / 1000), each));
   if (fixed > 0) fact("fixed balls of the ground", count_text(fixed / n));
   fact("simulated time", duration_text(simulated / n) + each);
   fact("computing time", duration_text(result.wall_seconds));
@@ -247,9 +247,11 @@ std::string facts(const RunResult& result) {
                                   ? fmt::format("{} spheres, {} t{}", count_text(lost),
                                                 number_text(lost_mass / 1000), n > 1 ? " over all seeds" : "")
                                   : std::string("nothing"));
-  fact("at rest", interrupted ? "no: the run was interrupted"
-                  : at_rest   ? "yes: every dump came to rest"
-                              : "no: a dump was still moving at its time limit");
+  // A drop test ends at the top of the rebound.
+  if (result.seeds.empty() || !result.seeds.front().rebound_height)
+    fact("at rest", interrupted ? "no: the run was interrupted"
+                    : at_rest   ? "yes: every dump came to rest"
+                                : "no: a dump was still moving at its time limit");
   return out + "</dl>\n";
 }
 

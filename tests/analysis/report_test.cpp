@@ -141,10 +141,14 @@ TEST(Report, ADropTestHasNoPile) {
   rock.diameter = 0.1, rock.mass = 1.4, rock.position = Vec3(0, 0, 0.23);
   run.seeds[0].final_state.grains = {rock};
   run.seeds[0].rebound_height = 0.18;
+  run.seeds[0].particles = 1;
+  run.seeds[0].mass = 1.4;
   EXPECT_TRUE(write_report(run, folder).empty());
   const std::string page = text_of(folder / "report.html");
   EXPECT_THAT(page, HasSubstr("The rock rebounds to 0.180 m"));
   EXPECT_THAT(page, Not(HasSubstr("The pile")));
+  EXPECT_THAT(page, HasSubstr("1 sphere, 0.00140 t"));
+  EXPECT_THAT(page, Not(HasSubstr("came to rest"))) << "it ends at the top of the rebound";
   EXPECT_FALSE(std::filesystem::exists(folder / "pictures" / "heap_cut.png"));
 }
 
