@@ -1,12 +1,15 @@
 // Pictures as files, good and bad, through the program as a user calls it.
 #include "analysis/image/picture_file.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgproc.hpp>
+#include <sstream>
 
 #include "analysis/image/scale_target.h"
 #include "sim/material/input_text.h"
@@ -216,7 +219,24 @@ TEST_F(PictureFile, RenderAndImageWorkTogether) {
            " --target-diameter 40mm --detection-limit 0.3 --model sphere --sections 2 --truth " +
            (folder_ / "a.truth.csv").string() + " --out " + (folder_ / "out").string());
   ASSERT_EQ(seen.code, 0) << seen.text;
-  EXPECT_THAT(seen.text, HasSubstr("known rock: D50"));
+  // D10, D50, D80 and mass, each measured, known, and its error.
+  const auto row = [&](const std::string& name) {
+    std::array<double, 4> values{};
+    std::istringstream words(seen.text.substr(seen.text.find("\n  " + name) + 3 + name.size()));
+    for (double& value : values) words >> value;
+    return values;
+  };
+  const auto measured = row("measured"), known = row("known"), error = row("error, %");
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_GT(known[k], 0) << seen.text;
+    EXPECT_NEAR(error[k], 100 * (measured[k] / known[k] - 1), 0.3) << seen.text;
+  }
+  EXPECT_LT(known[0], known[1]);
+  EXPECT_LT(known[1], known[2]);
+  EXPECT_THAT(seen.text,
+              HasSubstr(fmt::format("{:.0f} % of the known mass is seen", 100 * measured[3] / known[3])));
+  EXPECT_THAT(slurp(folder_ / "out/report.html"),
+              AllOf(HasSubstr("D10 of visible rock"), HasSubstr("of the known mass is seen")));
   EXPECT_THAT(slurp(folder_ / "out" / "effects.yaml"), HasSubstr("image_blur:"));
   EXPECT_THAT(slurp(folder_ / "out" / "bias.csv"), HasSubstr("detected_share"));
 }
