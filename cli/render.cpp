@@ -66,8 +66,15 @@ bool settings_of(const RenderOptions& options, scree::PhotoSettings& photo, scre
 scree::RockScene scene_of(const RenderOptions& options, const scree::SceneSettings& settings) {
   if (options.snapshot.empty()) {
     const fs::path known = asset_dir() / "gradings" / (options.grading + ".csv");
-    return make_scene(scree::read_grading(fs::exists(options.grading) ? fs::path(options.grading) : known),
-                      settings);
+    const scree::Grading grading =
+        scree::read_grading(fs::exists(options.grading) ? fs::path(options.grading) : known);
+    if (options.coverage) return make_scene(grading, settings);
+    scree::SceneSettings lowered = settings;
+    scree::RockScene scene = make_scene_with_room(grading, lowered);
+    if (lowered.coverage < settings.coverage)
+      fmt::print("coverage: {:.2f}; at {:.2f} this rock finds no room\n", lowered.coverage,
+                 settings.coverage);
+    return scene;
   }
   scree::SnapshotRead read = scree::read_snapshot(options.snapshot, {});
   std::optional<double> slope = options.slope;

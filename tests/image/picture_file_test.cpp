@@ -241,6 +241,23 @@ TEST_F(PictureFile, RenderAndImageWorkTogether) {
   EXPECT_THAT(slurp(folder_ / "out" / "bias.csv"), HasSubstr("detected_share"));
 }
 
+// Rock that does not cover 0.35 of a picture with gaps between grains of half its smallest diameter.
+TEST_F(PictureFile, ACoverageThatIsNotGivenIsLoweredUntilTheRockFits) {
+  const std::string command =
+      "render --pixels 640x480 --scale 3cm/px --force --grading " +
+      write("rock.csv", "diameter_mm,passing_pct\n200,0\n300,31.5\n500,64\n1000,100\n").string() + " ";
+  const std::string a = (folder_ / "a.png").string(), b = (folder_ / "b.png").string();
+  const Called lowered = call(command + a), again = call(command + b);
+  ASSERT_EQ(lowered.code, 0) << lowered.text;
+  EXPECT_THAT(lowered.text,
+              testing::ContainsRegex("coverage: 0\\.[23][0-9]; at 0\\.35 this rock finds no room"));
+  EXPECT_EQ(again.code, 0);
+  EXPECT_EQ(slurp(a), slurp(b));
+  const Called given = call(command + a + " --coverage 0.35");
+  EXPECT_EQ(given.code, 2);
+  EXPECT_THAT(given.text, HasSubstr("take a coverage below 0.35"));
+}
+
 TEST_F(PictureFile, OfNoKnownGrainNoEffectsAreMade) {
   write_picture(folder_ / "discs.png", grey_with_discs());
   const fs::path truth = write("truth.csv",
