@@ -145,7 +145,8 @@ void print_check(const scree::TruthCheck& check, const std::string& bodies) {
        error(measured.mass, known.mass)},
       "{:+.1f}");
   fmt::print(
-      " {:.0f} % of the known mass is seen{}; perfect outlines: D10 {:+.1f} %, D50 {:+.1f} %, D80 {:+.1f} %\n",
+      " {:.0f} % of the known mass is seen{}; perfect outlines: D10 {:+.1f} %, D50 {:+.1f} %, D80 {:+.1f} "
+      "%\n",
       100 * check.mass_seen(), bodies, error(ideal.d10, known.d10), error(ideal.d50, known.d50),
       error(ideal.d80, known.d80));
   fmt::print("all rock: D50 {:.1f} cm, measured {:+.1f} % off; largest error of chi {:.2f}\n",
@@ -207,6 +208,17 @@ WrittenDataset dataset_of(const ImageOptions& options, const scree::Scenario& sc
   return {out, [draft = std::move(draft)](const fs::path& folder) {
             return note_of_left_out(scree::write_dataset(draft, folder));
           }};
+}
+
+// Sections of a run reach from the crest to the toe, and so must those of the pictures.
+void note_whole_picture(const std::vector<scree::PhotoTruth>& truths) {
+  std::string known;
+  for (const scree::PhotoTruth& truth : truths)
+    if (known.empty() && !truth.region.empty()) known = fmt::format(" \"{}\"", truth.region);
+  fmt::print(
+      "note: the whole picture is taken for the slope, the crest at its top edge and the toe at its foot; if "
+      "there is more in it: --region{}\n",
+      known);
 }
 
 // What can be said before any picture is looked at.
@@ -271,6 +283,10 @@ int run_image(const ImageOptions& options) {
     fmt::print(stderr, "{}: {}\n", options.weighed.string(), error.what());
     return kBadInput;
   }
+  const bool of_bench = scenario && bench_of(*scenario) != nullptr;
+  const bool of_pile = std::any_of(truths.begin(), truths.end(),
+                                   [](const scree::PhotoTruth& truth) { return !truth.region.empty(); });
+  if (options.region.empty() && (of_bench || of_pile)) note_whole_picture(truths);
   std::optional<WrittenDataset> dataset;
   if (scenario) {
     dataset = dataset_of(options, *scenario, report.photos, out);

@@ -229,7 +229,8 @@ RockScene view_of_slope(const std::vector<Grain>& pile, const std::vector<Grain>
     high = high.cwiseMax((at.array() + grain.diameter / 2).matrix());
   }
   const Vec3 corner(low.x() - margin, low.y() - margin, low.z());
-  RockScene scene{high.x() - low.x() + 2 * margin, high.y() - low.y() + 2 * margin, pile, ground};
+  RockScene scene{
+      high.x() - low.x() + 2 * margin, high.y() - low.y() + 2 * margin, pile, ground, slope_deg, -corner.y()};
   for (auto* grains : {&scene.grains, &scene.ground})
     for (Grain& grain : *grains) grain.position = turned(grain.position) - corner;
   return scene;

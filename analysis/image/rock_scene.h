@@ -16,6 +16,8 @@ struct RockScene {
   double width = 0, height = 0;  ///< of what is seen, m
   std::vector<Grain> grains;
   std::vector<Grain> ground;  ///< spheres that belong to the ground: seen, not counted
+  double slope_deg = 0;       ///< of a pile: the slope at right angles to which it is seen
+  double origin_down = 0;     ///< of a pile: its origin, m down the picture
 };
 
 /// How grains of a made-up scene lie: each for itself; outline against outline; on top of one another.

@@ -162,12 +162,40 @@ TEST_F(PictureFile, ADatasetComparesSectionsOfTheSameCut) {
              " --scale 1cm/px --sections " + sections + " --scenario " SCREE_TEST_ASSETS "/../scenarios/" +
              scenario + " --out " + out.string());
     EXPECT_EQ(called.code, 0) << called.text;
+    EXPECT_THAT(called.text, HasSubstr("note: the whole picture is taken for the slope"));
     return slurp(out / "dataset.yaml") + slurp(out / "observables.csv");
   };
   // Three sections and no others; six, and three beside them.
   EXPECT_THAT(dataset("small_dump.yaml", "2"), AllOf(HasSubstr("output.sections: 2"), HasSubstr("chi_S2,")));
   EXPECT_THAT(dataset("canadian_malartic_10m.yaml", "3"),
               AllOf(Not(HasSubstr("output.sections")), HasSubstr("chi_S3of3,"), HasSubstr("d50_m_S1of3,")));
+}
+
+// A dump of scree: its file says which bench it is of, and the region is printed and kept in the truth.
+TEST_F(PictureFile, APileIsShownWithTheRegionOfItsSlope) {
+  const fs::path run = folder_ / "run";
+  const Called ran =
+      call("run " SCREE_TEST_ASSETS "/../scenarios/small_dump.yaml --seeds 1 --out " + run.string());
+  ASSERT_EQ(ran.code, 0) << ran.text;
+  fs::path file;
+  for (const auto& entry : fs::recursive_directory_iterator(run))
+    if (entry.path().filename() == "particles.h5") file = entry.path();
+  ASSERT_FALSE(file.empty());
+  const std::string photo = (folder_ / "pile.png").string();
+  const Called made = call("render " + photo + " --scale 2cm/px --snapshot " + file.string());
+  ASSERT_EQ(made.code, 0) << made.text;
+  const std::string said = "slope, crest to toe of the run's bench: --region \"";
+  const auto at = made.text.find(said);
+  ASSERT_NE(at, std::string::npos) << made.text;
+  const auto from = at + said.size();
+  const std::string region = made.text.substr(from, made.text.find('"', from) - from);
+  EXPECT_THAT(made.text.substr(from), HasSubstr("--sections 3"));
+  EXPECT_THAT(slurp(folder_ / "pile.truth.csv"), HasSubstr("# region = " + region + "\n"));
+  const std::string image = "image " + photo + " --sections 3 --force --out " + (folder_ / "out").string() +
+                            " --truth " + (folder_ / "pile.truth.csv").string();
+  const std::string note = "note: the whole picture is taken for the slope";
+  EXPECT_THAT(call(image).text, AllOf(HasSubstr(note), HasSubstr(region)));
+  EXPECT_THAT(call(image + " --region \"" + region + "\"").text, Not(HasSubstr(note)));
 }
 
 TEST_F(PictureFile, ARegionBeyondThePictureIsTold) {
