@@ -265,6 +265,9 @@ int run_image(const ImageOptions& options) {
       const cv::Mat3b picture = scree::read_photograph(file);
       scree::AnalysedPhoto photo{name, analyse(file, picture, report.settings), {}};
       photo.gradings = scree::gradings_of(photo.found.grains, options.sections, report.settings.model);
+      for (std::string& note :
+           scree::single_grain_notes(photo.found.grains, photo.gradings, report.settings.model))
+        photo.found.notes.push_back(std::move(note));
       print_gradings(photo);
       overlays.push_back(scree::overlay(picture, photo.found, options.sections, kOverlaySide));
       if (!truths.empty()) {

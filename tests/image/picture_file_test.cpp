@@ -134,6 +134,24 @@ TEST_F(PictureFile, DiscsOfKnownSizeComeOutAsTheyAre) {
   EXPECT_THAT(slurp(out / "gradings.csv"), HasSubstr("image,section,d100_cm,d95_cm"));
 }
 
+// Sixteen equal small discs above, and one of nine times their diameter among as many below: of spheres
+// 729 / (729 + 16) of the mass.
+TEST_F(PictureFile, ASectionThatIsOneGrainIsNoted) {
+  cv::Mat3b picture(600, 800, cv::Vec3b(60, 60, 60));
+  for (int k = 0; k < 16; ++k)
+    for (const int y : {100, 570})
+      cv::circle(picture, {30 + 48 * k, y}, 10, cv::Scalar(190, 190, 190), cv::FILLED);
+  cv::circle(picture, {400, 430}, 94, cv::Scalar(190, 190, 190), cv::FILLED);  // 189 px to 21
+  write_picture(folder_ / "block.png", picture);
+  const fs::path out = folder_ / "out";
+  const Called called = call("image " + (folder_ / "block.png").string() +
+                             " --scale 1cm/px --model sphere --sections 2 --out " + out.string());
+  ASSERT_EQ(called.code, 0) << called.text;
+  EXPECT_THAT(called.text, testing::ContainsRegex("note: one grain is 9[89] % of the mass of S2:"));
+  EXPECT_THAT(called.text, Not(HasSubstr("of the mass of S1")));
+  EXPECT_THAT(slurp(out / "report.html"), HasSubstr("of the mass of S2"));
+}
+
 // A picture and its copy have no scatter between repeats: nothing is left for a dataset, and nothing is
 // written.
 TEST_F(PictureFile, ARefusedDatasetLeavesNothing) {
