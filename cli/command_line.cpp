@@ -433,7 +433,7 @@ Command render_command(CLI::App& all) {
       ->capture_default_str();
   app->add_option("--scale", render.scale, "Length of a pixel")->capture_default_str();
   app->add_option("--coverage", render.coverage,
-                  "Area of all outlines over the picture's; default: 0.35, 0.5, 1.5")
+                  "Area of all outlines over the picture's; default: 0.35, 0.5, 1.5, or what finds room")
       ->check(within(0.01, 5));
   app->add_option("--segregation", render.segregation, "How much coarser the foot is than the top, -1 to 1")
       ->check(within(-1, 1))

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <opencv2/core.hpp>
@@ -113,7 +114,8 @@ void print_gradings(const scree::AnalysedPhoto& photo) {
   }
 }
 
-void print_check(const scree::TruthCheck& check) {
+// `bodies`: what masses are those of, said where the rock is not.
+void print_check(const scree::TruthCheck& check, const std::string& bodies) {
   if (!check.known[0].curve) {
     fmt::print("known rock: none of it in sight here; is this the truth of this picture?\n");
     return;
@@ -124,12 +126,31 @@ void print_check(const scree::TruthCheck& check) {
       worst = std::fmax(worst, std::isfinite(check.measured[k].chi)
                                    ? std::abs(check.measured[k].chi - check.known[k].chi)
                                    : INFINITY);
-  const double known = check.known[0].d50, measured = check.measured[0].d50;
+  const scree::ImageGrading &known = check.known[0], &measured = check.measured[0], &ideal = check.ideal[0];
+  const auto row = [](const char* name, const std::array<double, 4>& values, const char* format) {
+    fmt::print("{:<22}", name);
+    for (const double value : values) fmt::print(" {:>9}", fmt::format(fmt::runtime(format), value));
+    fmt::print("\n");
+  };
+  const auto of = [](const scree::ImageGrading& g) {
+    return std::array{100 * g.d10, 100 * g.d50, 100 * g.d80, g.mass / 1000};
+  };
+  const auto error = [](double is, double should) { return 100 * (is / should - 1); };
+  fmt::print("{:<22} {:>9} {:>9} {:>9} {:>9}\n", "rock that can be seen", "D10, cm", "D50, cm", "D80, cm",
+             "mass, t");
+  row("  measured", of(measured), "{:.4g}");
+  row("  known", of(known), "{:.4g}");
+  row("  error, %",
+      {error(measured.d10, known.d10), error(measured.d50, known.d50), error(measured.d80, known.d80),
+       error(measured.mass, known.mass)},
+      "{:+.1f}");
   fmt::print(
-      "known rock: D50 {:.1f} cm of what can be seen, measured {:+.1f} % off (perfect outlines {:+.1f} %)\n",
-      100 * known, 100 * (measured / known - 1), 100 * (check.ideal[0].d50 / known - 1));
-  fmt::print("            D50 {:.1f} cm of all rock, measured {:+.1f} % off; largest error of chi {:.2f}\n",
-             100 * check.scene_d50, 100 * (measured / check.scene_d50 - 1), worst);
+      " {:.0f} % of the known mass is seen{}; perfect outlines: D10 {:+.1f} %, D50 {:+.1f} %, D80 {:+.1f} "
+      "%\n",
+      100 * check.mass_seen(), bodies, error(ideal.d10, known.d10), error(ideal.d50, known.d50),
+      error(ideal.d80, known.d80));
+  fmt::print("all rock: D50 {:.1f} cm, measured {:+.1f} % off; largest error of chi {:.2f}\n",
+             100 * check.scene_d50, error(measured.d50, check.scene_d50), worst);
 }
 
 void print_bias(const scree::ImageBias& bias) {
@@ -189,6 +210,17 @@ WrittenDataset dataset_of(const ImageOptions& options, const scree::Scenario& sc
           }};
 }
 
+// Sections of a run reach from the crest to the toe, and so must those of the pictures.
+void note_whole_picture(const std::vector<scree::PhotoTruth>& truths) {
+  std::string known;
+  for (const scree::PhotoTruth& truth : truths)
+    if (known.empty() && !truth.region.empty()) known = fmt::format(" \"{}\"", truth.region);
+  fmt::print(
+      "note: the whole picture is taken for the slope, the crest at its top edge and the toe at its foot; if "
+      "there is more in it: --region{}\n",
+      known);
+}
+
 // What can be said before any picture is looked at.
 bool may_begin(const ImageOptions& options, std::optional<scree::Scenario>& scenario) {
   if (given_twice(options.photos)) return false;
@@ -233,12 +265,15 @@ int run_image(const ImageOptions& options) {
       const cv::Mat3b picture = scree::read_photograph(file);
       scree::AnalysedPhoto photo{name, analyse(file, picture, report.settings), {}};
       photo.gradings = scree::gradings_of(photo.found.grains, options.sections, report.settings.model);
+      for (std::string& note :
+           scree::single_grain_notes(photo.found.grains, photo.gradings, report.settings.model))
+        photo.found.notes.push_back(std::move(note));
       print_gradings(photo);
       overlays.push_back(scree::overlay(picture, photo.found, options.sections, kOverlaySide));
       if (!truths.empty()) {
         report.checks.push_back(
             scree::check_against_truth(photo.found, truths[report.photos.size()], report.settings));
-        print_check(report.checks.back());
+        print_check(report.checks.back(), scree::bodies_in_words(report.settings));
       } else {
         photo.found.labels.of.release();  // large, and no longer needed
       }
@@ -251,6 +286,10 @@ int run_image(const ImageOptions& options) {
     fmt::print(stderr, "{}: {}\n", options.weighed.string(), error.what());
     return kBadInput;
   }
+  const bool of_bench = scenario && bench_of(*scenario) != nullptr;
+  const bool of_pile = std::any_of(truths.begin(), truths.end(),
+                                   [](const scree::PhotoTruth& truth) { return !truth.region.empty(); });
+  if (options.region.empty() && (of_bench || of_pile)) note_whole_picture(truths);
   std::optional<WrittenDataset> dataset;
   if (scenario) {
     dataset = dataset_of(options, *scenario, report.photos, out);

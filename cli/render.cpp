@@ -1,13 +1,16 @@
 // scree render: a virtual photograph of known rock.
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "analysis/image/image_bias.h"
 #include "analysis/image/picture_file.h"
 #include "analysis/image/render_photo.h"
-#include "analysis/pile/slope_profile.h"
+#include "analysis/image/slope_view.h"
+#include "cli/bench_in_file.h"
 #include "cli/commands.h"
 #include "cli/option_values.h"
 #include "cli/picture_options.h"
@@ -63,26 +66,49 @@ bool settings_of(const RenderOptions& options, scree::PhotoSettings& photo, scre
   return true;
 }
 
-scree::RockScene scene_of(const RenderOptions& options, const scree::SceneSettings& settings) {
-  if (options.snapshot.empty()) {
-    const fs::path known = asset_dir() / "gradings" / (options.grading + ".csv");
-    return make_scene(scree::read_grading(fs::exists(options.grading) ? fs::path(options.grading) : known),
-                      settings);
-  }
+// A scene, and where in it a pile has its slope.
+struct View {
+  scree::RockScene scene;
+  std::optional<scree::PileSlope> slope;
+  std::optional<BenchInFile> bench;
+};
+
+View view_of_pile(const RenderOptions& options) {
   scree::SnapshotRead read = scree::read_snapshot(options.snapshot, {});
-  std::optional<double> slope = options.slope;
-  if (!slope) {
-    double top = 0;
-    for (const scree::Grain& grain : read.snapshot.grains) top = std::max(top, grain.position.z());
-    if (top > 0)
-      if (const auto line = scree::slope_line(scree::slope_profile(read.snapshot.grains, top), top))
-        slope = line->angle;
-    if (!slope)
+  View view;
+  view.bench = bench_in_file(options.snapshot);
+  view.slope =
+      slope_of_pile(read.snapshot.grains, view.bench ? std::optional(view.bench->height) : std::nullopt);
+  std::optional<double> seen_at = options.slope;
+  if (!seen_at) {
+    if (!view.slope)
       throw scree::FileError(options.snapshot, 0,
                              "shows no slope along x; say at which angle it is seen: --slope 37");
-    fmt::print("slope: {:.1f} degrees\n", *slope);
+    seen_at = view.slope->angle;
+    fmt::print("slope: {:.1f} degrees\n", *seen_at);
   }
-  return scree::view_of_slope(read.snapshot.grains, read.fixed, *slope, 0.5);
+  view.scene = scree::view_of_slope(read.snapshot.grains, read.fixed, *seen_at, 0.5);
+  return view;
+}
+
+View view_of(const RenderOptions& options, const scree::SceneSettings& settings) {
+  if (!options.snapshot.empty()) return view_of_pile(options);
+  const fs::path known = asset_dir() / "gradings" / (options.grading + ".csv");
+  const scree::Grading grading =
+      scree::read_grading(fs::exists(options.grading) ? fs::path(options.grading) : known);
+  if (options.coverage) return {make_scene(grading, settings), {}, {}};
+  scree::SceneSettings lowered = settings;
+  View view{make_scene_with_room(grading, lowered), {}, {}};
+  if (lowered.coverage < settings.coverage)
+    fmt::print("coverage: {:.2f}; at {:.2f} this rock finds no room\n", lowered.coverage, settings.coverage);
+  return view;
+}
+
+// The picture's slope, as `scree image` takes it.
+void print_region(const View& view, const std::string& region) {
+  fmt::print("slope, {}: --region \"{}\"{}\n",
+             view.bench ? "crest to toe of the run's bench" : "the fitted line from the pile's top to z = 0",
+             region, view.bench ? fmt::format(" --sections {}", view.bench->sections) : "");
 }
 
 }  // namespace
@@ -104,8 +130,13 @@ int run_render(const RenderOptions& options) {
       return kBadInput;
     }
   scree::Photo made;
+  View view;
+  std::optional<std::array<int, 4>> region;
   try {
-    made = scree::render_photo(scene_of(options, scene), photo);
+    view = view_of(options, scene);
+    made = scree::render_photo(view.scene, photo);
+    if (view.slope) region = slope_region(view.scene, *view.slope, photo.m_per_px);
+    if (region) made.truth.region = scree::region_text(*region);
   } catch (const scree::FileError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return kBadInput;
@@ -120,8 +151,11 @@ int run_render(const RenderOptions& options) {
   scree::write_picture(options.out, made.picture);
   scree::write_text_file(truth, scree::truth_csv(made.truth));
   std::string chi;
+  scree::PhotoAnalysisSettings analysis;
+  if (view.bench) analysis.sections = view.bench->sections;
+  if (region) analysis.region = *polygon_in("--region", made.truth.region);
   const auto gradings =
-      true_gradings(made.truth, scree::PhotoRegion(made.picture.size(), {}), scree::PhotoAnalysisSettings{});
+      true_gradings(made.truth, scree::PhotoRegion(made.picture.size(), analysis.region), analysis);
   for (std::size_t k = 1; k < gradings.size(); ++k)
     chi += gradings[k].grains > 0 ? fmt::format(" {:+.2f}", gradings[k].chi) : " -";
   fmt::print(
@@ -129,5 +163,6 @@ int run_render(const RenderOptions& options) {
       "S{}:{}\ntruth: {}\n",
       options.out.string(), made.picture.cols, made.picture.rows, 100 * photo.m_per_px,
       made.truth.grains.size(), made.truth.scene_d50, gradings.size() - 1, chi, truth.string());
+  if (region) print_region(view, made.truth.region);
   return kOk;
 }

@@ -185,6 +185,13 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
   return r;
 }
 
+std::string why_no_slope_angle(const Scenario& scenario, const SeedResult& seed) {
+  const BenchSpec* bench = bench_of(scenario);
+  if (bench == nullptr || seed.slope_angle) return "";
+  return fmt::format("no slope angle; too little of the pile's surface lies between {:g} and {:g} m",
+                     kSlopeLow * bench->height, kSlopeHigh * bench->height);
+}
+
 RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
                        std::vector<std::string> notes, const std::vector<ReferenceValue>& reference,
                        double wall_seconds) {
@@ -214,10 +221,8 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
     lost += s.lost_mass, lost_count += s.lost_particles, mass += s.mass;
     squeezed += s.squeezed_into_walls, crowded += s.crowded_contacts;
     if (!s.sections.empty()) left_out += s.sections.front().mass_outside;
-    if (bench_of(scenario) && !s.slope_angle)
-      result.notes.push_back(fmt::format(
-          "seed {}: no slope angle; too little of the pile's surface lies between {:g} and {:g} m", s.seed,
-          kSlopeLow * result.bench_height, kSlopeHigh * result.bench_height));
+    if (const std::string why = why_no_slope_angle(scenario, s); !why.empty())
+      result.notes.push_back(fmt::format("seed {}: {}", s.seed, why));
     if (bench_of(scenario) && s.slope_angle && s.slope_cover < kThinCover)
       result.notes.push_back(fmt::format(
           "seed {}: the rock lies {} times its D50 thick on the face of the bench: its slope is the face's "

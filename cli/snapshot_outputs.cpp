@@ -13,11 +13,39 @@
 namespace scree {
 namespace {
 
-constexpr double kOtherRock = 4;    // times the D50 of the scenario: other rock, or other units
-constexpr double kMuchAbove = 0.2;  // of the mass above the crest: the pile and the bench do not fit
+constexpr double kOtherRock = 4;     // times the D50 of the scenario: other rock, or other units
+constexpr double kMuchAbove = 0.2;   // of the mass above the crest: the pile and the bench do not fit
+constexpr double kMuchBehind = 0.1;  // of the mass inside the bench
+constexpr double kFewNear = 0.05;    // of the mass, where a pile has no more of it near its bench
+constexpr double kReachOfToe = 0.5;  // of the bench's height: what is near its toe
 
 constexpr std::array kOfDumps{"layer_coarsening_down", "layer_variance_between", "layer_variance_by_chance",
                               "point1_toe_width_m"};
+
+// A pile at another place than its bench: mirrored, or shifted along x. chi goes by height and is the same.
+void note_misplaced(const BenchSpec& bench, const std::vector<Grain>& pile, std::vector<std::string>& notes) {
+  const double toe = BenchOutline{bench.height, bench.slope_deg}.toe();
+  const double far = toe + kReachOfToe * bench.height;
+  // Rock may lie between the balls of the top.
+  const double top = bench.height - (bench.base_layer == BaseLayer::none ? 0 : bench.ball_diameter);
+  double mass = 0, behind = 0, beyond = 0;
+  for (const Grain& grain : pile) {
+    const Vec3& at = grain.position;
+    mass += grain.mass;
+    if (at.x() < 0 && at.z() + 0.5 * grain.diameter < top) behind += grain.mass;
+    if (at.x() > far) beyond += grain.mass;
+  }
+  if (behind > kMuchBehind * mass)
+    notes.push_back(
+        fmt::format("{:.0f} % of the mass lies behind the crest (x < 0) below the bench's top, inside the "
+                    "bench: its crest must be at x = 0, dumped towards +x (--shift moves the pile)",
+                    100 * behind / mass));
+  if (beyond > (1 - kFewNear) * mass)
+    notes.push_back(
+        fmt::format("{:.0f} % of the mass lies more than {:.3g} m beyond the toe (x = {:.3g} m): the bench's "
+                    "crest must be at x = 0 (--shift moves the pile)",
+                    100 * beyond / mass, far - toe, toe));
+}
 
 void note_misfit(const Scenario& scenario, const SeedResult& seed, std::vector<std::string>& notes) {
   if (!scenario.grading_file.empty() && !seed.final_state.grains.empty()) {
@@ -49,6 +77,8 @@ void note_misfit(const Scenario& scenario, const SeedResult& seed, std::vector<s
         fmt::format("{:.0f} % of the mass lies above the crest ({:g} m): is it this bench, its crest at x = "
                     "0, its floor at z = 0, dumped towards +x?",
                     100 * seed.sections.front().mass_outside / mass, bench_of(scenario)->height));
+  if (const BenchSpec* bench = bench_of(scenario)) note_misplaced(*bench, seed.final_state.grains, notes);
+  if (const std::string why = why_no_slope_angle(scenario, seed); !why.empty()) notes.push_back(why);
 }
 
 }  // namespace

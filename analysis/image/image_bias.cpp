@@ -191,6 +191,12 @@ std::vector<ImageGrading> true_gradings(const PhotoTruth& truth, const PhotoRegi
   return gradings_of(diameters, masses, known.section, settings.sections);
 }
 
+std::string bodies_in_words(const PhotoAnalysisSettings& settings) {
+  return settings.model == SizeModel::sphere
+             ? ""
+             : fmt::format(" (as bodies of c/b = {:g}; virtual rock is spheres)", settings.shape_factor);
+}
+
 TruthCheck check_against_truth(const PhotoAnalysis& found, const PhotoTruth& truth,
                                const PhotoAnalysisSettings& settings) {
   const KnownGrains known = known_grains(truth, found.region, settings);

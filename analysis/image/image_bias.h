@@ -41,7 +41,13 @@ struct TruthCheck {
   /// `known` is rock that lies on rock, which no analysis of a picture can tell.
   std::vector<ImageGrading> ideal;
   double scene_d50 = 0;  ///< m, of all grains, hidden ones too
+
+  /// Mass measured over that of the known grains.
+  double mass_seen() const { return measured[0].mass / known[0].mass; }
 };
+
+/// How masses are meant that are not those of spheres, which virtual rock is: " (bodies of c/b = 0.53)".
+std::string bodies_in_words(const PhotoAnalysisSettings& settings);
 
 /// Grains found in one picture and its truth. A known grain belongs to the outline that has the middle of
 /// what is seen of it; where an outline has several, the one of which most is seen. Those outside the region

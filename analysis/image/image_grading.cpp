@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -8,6 +9,7 @@
 namespace scree {
 namespace {
 
+constexpr double kMostOfASection = 0.5;  // of its mass: the rest of its grains decide over little
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 ImageGrading grading_of(std::string name, const std::vector<double>& diameters,
@@ -67,6 +69,23 @@ std::vector<ImageGrading> gradings_of(const std::vector<ImageGrain>& grains, int
     section.push_back(grain.section);
   }
   return gradings_of(diameters, masses, section, sections);
+}
+
+std::vector<std::string> single_grain_notes(const std::vector<ImageGrain>& grains,
+                                            const std::vector<ImageGrading>& gradings, SizeModel model) {
+  std::vector<double> heaviest(gradings.size(), 0.0);
+  for (const ImageGrain& grain : grains) {
+    const double mass = grain.size[static_cast<std::size_t>(model)].mass * grain.weight;
+    for (const std::size_t k : {std::size_t{0}, static_cast<std::size_t>(grain.section) + 1})
+      heaviest[k] = std::max(heaviest[k], mass);
+  }
+  std::vector<std::string> notes;
+  for (std::size_t k = gradings.size() > 2 ? 0 : 1; k < gradings.size(); ++k)
+    if (heaviest[k] > kMostOfASection * gradings[k].mass)
+      notes.push_back(
+          fmt::format("one grain is {:.0f} % of the mass of {}: its D_x and chi are those of this grain",
+                      100 * heaviest[k] / gradings[k].mass, k == 0 ? "the whole" : gradings[k].name));
+  return notes;
 }
 
 }  // namespace scree

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "analysis/report/profile_chart.h"
 #include "analysis/report/report_page.h"
@@ -114,27 +115,31 @@ std::string gradings_table(const std::vector<ImageGrading>& gradings) {
   return out + "</tbody></table></div>\n";
 }
 
-std::string check_table(const TruthCheck& check) {
-  std::string out =
-      "<div class=\"wide\"><table><thead><tr><th class=\"word\">Section</th><th>D50 of visible rock, "
-      "cm</th><th>"
-      "measured</th><th>error</th><th>χ of visible "
+std::string check_table(const TruthCheck& check, const std::string& bodies) {
+  std::string out = "<div class=\"wide\"><table><thead><tr><th class=\"word\">Section</th>";
+  for (const char* quantity : {"D10 of visible rock, cm", "D50", "D80"})
+    out += fmt::format("<th>{}</th><th>measured</th><th>error</th>", quantity);
+  out +=
+      "<th>mass seen</th><th>χ of visible "
       "rock</th><th>measured</th><th>difference</th></tr></thead><tbody>\n";
   for (std::size_t k = 0; k < check.known.size(); ++k) {
     const ImageGrading &known = check.known[k], &measured = check.measured[k];
-    out += fmt::format(
-        "<tr><td class=\"word\">{}</td><td>{}</td><td>{}</td><td>{} %</td><td>{}</td><td>{}</td><td>{}</td>"
-        "</tr>\n",
-        known.name, number_text(100 * known.d50), number_text(100 * measured.d50),
-        decimals_text(100 * (measured.d50 / known.d50 - 1), 1), decimals_text(known.chi, 2),
-        decimals_text(measured.chi, 2), decimals_text(measured.chi - known.chi, 2));
+    out += fmt::format("<tr><td class=\"word\">{}</td>", known.name);
+    for (const auto& [should, is] : {std::pair(known.d10, measured.d10), std::pair(known.d50, measured.d50),
+                                     std::pair(known.d80, measured.d80)})
+      out += fmt::format("<td>{}</td><td>{}</td><td>{} %</td>", number_text(100 * should),
+                         number_text(100 * is), decimals_text(100 * (is / should - 1), 1));
+    out += fmt::format("<td>{} %</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+                       decimals_text(100 * measured.mass / known.mass, 0), decimals_text(known.chi, 2),
+                       decimals_text(measured.chi, 2), decimals_text(measured.chi - known.chi, 2));
   }
   return out + fmt::format(
-                   "</tbody></table></div>\n<p>Perfect outlines of what can be seen would give D50 {} cm: "
-                   "what lies on "
-                   "rock hides a part of it. D50 of all rock of the scene, hidden rock too: {} cm; measured "
-                   "{} % off.</p>\n",
-                   number_text(100 * check.ideal[0].d50), number_text(100 * check.scene_d50),
+                   "</tbody></table></div>\n<p>{} % of the known mass is seen{}. Perfect outlines of what "
+                   "can be seen would give D10 {}, D50 {} and D80 {} cm: what lies on rock hides a part of "
+                   "it. D50 of all rock of the scene, hidden rock too: {} cm; measured {} % off.</p>\n",
+                   decimals_text(100 * check.mass_seen(), 0), bodies, number_text(100 * check.ideal[0].d10),
+                   number_text(100 * check.ideal[0].d50), number_text(100 * check.ideal[0].d80),
+                   number_text(100 * check.scene_d50),
                    decimals_text(100 * (check.measured[0].d50 / check.scene_d50 - 1), 1));
 }
 
@@ -172,7 +177,9 @@ void write_image_report(const ImageReport& report, const fs::path& folder) {
     body += figure(
         {"What was counted", report.overlays[i], "Outlines of grains, borders of sections, scale targets."});
     body += gradings_table(photo.gradings) + figure(passing_chart(photo, i + 1, folder));
-    if (i < report.checks.size()) body += "<h3>Against what is known</h3>\n" + check_table(report.checks[i]);
+    if (i < report.checks.size())
+      body += "<h3>Against what is known</h3>\n" +
+              check_table(report.checks[i], html_escaped(bodies_in_words(report.settings)));
   }
   body += "<h2>Along the slope</h2>\n" + figure(chi_chart(report, folder));
   if (report.bias)

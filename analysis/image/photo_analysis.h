@@ -77,6 +77,11 @@ std::vector<ImageGrading> gradings_of(const std::vector<ImageGrain>& grains, int
 std::vector<ImageGrading> gradings_of(const std::vector<double>& diameters, const std::vector<double>& masses,
                                       const std::vector<int>& section, int sections);
 
+/// Of every section, and of the whole where it has several, more than half of whose mass is one grain: that
+/// it is, for a reader. `gradings`: those of the grains.
+std::vector<std::string> single_grain_notes(const std::vector<ImageGrain>& grains,
+                                            const std::vector<ImageGrading>& gradings, SizeModel model);
+
 /// Section of a height within the region (px), 0 to sections - 1.
 int section_of(double y, const PhotoRegion& region, int sections);
 

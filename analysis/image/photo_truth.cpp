@@ -13,16 +13,19 @@ namespace fs = std::filesystem;
 constexpr const char* kColumns[] = {"id",          "x_px",          "y_px",        "diameter_m", "mass_kg",
                                     "visible_cm2", "visible_share", "visible_a_m", "visible_b_m"};
 
-// The number behind "# name = " in a comment line.
-double stated(const fs::path& file, const std::string& bytes, const std::string& name) {
+// What stands behind "# name = " in a comment line; empty without one.
+std::string_view said(const std::string& bytes, const std::string& name) {
   const std::string start = "# " + name + " = ";
   const auto at = bytes.find(start);
-  if (at != std::string::npos) {
-    const auto from = at + start.size();
-    const auto value =
-        number_in(trimmed(std::string_view(bytes).substr(from, bytes.find('\n', from) - from)));
-    if (value && *value > 0) return *value;
-  }
+  if (at == std::string::npos) return {};
+  const auto from = at + start.size();
+  return trimmed(std::string_view(bytes).substr(from, bytes.find('\n', from) - from));
+}
+
+// A number above 0 that must be there.
+double stated(const fs::path& file, const std::string& bytes, const std::string& name) {
+  if (const auto value = number_in(said(bytes, name)); value && *value > 0) return *value;
+  const std::string start = "# " + name + " = ";
   throw FileError(file, 0, fmt::format("has no line `{}NUMBER`; scree render writes one", start));
 }
 
@@ -31,8 +34,9 @@ double stated(const fs::path& file, const std::string& bytes, const std::string&
 std::string truth_csv(const PhotoTruth& truth) {
   std::string text = fmt::format(
       "# What a virtual photograph shows; pixels from the top left corner, of the middle of what is seen.\n"
-      "# m_per_px = {:.9g}\n# scene_d50_m = {:.9g}\n{}\n",
-      truth.m_per_px, truth.scene_d50, fmt::join(kColumns, ","));
+      "# m_per_px = {:.9g}\n# scene_d50_m = {:.9g}\n{}{}\n",
+      truth.m_per_px, truth.scene_d50, truth.region.empty() ? "" : "# region = " + truth.region + "\n",
+      fmt::join(kColumns, ","));
   for (const VisibleGrain& grain : truth.grains)
     text += fmt::format("{},{:.2f},{:.2f},{:.6g},{:.6g},{:.6g},{:.4f},{:.6g},{:.6g}\n", grain.id, grain.x,
                         grain.y, grain.diameter, grain.mass, 1e4 * grain.visible_area, grain.visible_share,
@@ -54,6 +58,7 @@ PhotoTruth read_truth(const fs::path& file) {
   PhotoTruth truth;
   truth.m_per_px = stated(file, bytes, "m_per_px");
   truth.scene_d50 = stated(file, bytes, "scene_d50_m");
+  truth.region = said(bytes, "region");
   while (table.next()) {
     double value[std::size(kColumns)];
     for (std::size_t i = 0; i < std::size(kColumns); ++i) {

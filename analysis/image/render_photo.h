@@ -40,6 +40,7 @@ struct VisibleGrain {
 struct PhotoTruth {
   double m_per_px = 0;
   double scene_d50 = 0;              ///< m, by mass of all grains of the scene, seen or not
+  std::string region;                ///< of a pile: its slope, as `scree image --region` takes it; or empty
   std::vector<VisibleGrain> grains;  ///< by rising id
 };
 
@@ -54,7 +55,7 @@ struct Photo {
 Photo render_photo(const RockScene& scene, const PhotoSettings& settings);
 
 /// The truth as CSV: `id,x_px,y_px,diameter_m,mass_kg,visible_cm2,visible_share,visible_a_m,visible_b_m`, and
-/// in comment lines `# m_per_px = ...`, `# scene_d50_m = ...`.
+/// in comment lines `# m_per_px = ...`, `# scene_d50_m = ...`, and `# region = ...` where there is one.
 std::string truth_csv(const PhotoTruth& truth);
 /// Reads it. Throws FileError.
 PhotoTruth read_truth(const std::filesystem::path& file);

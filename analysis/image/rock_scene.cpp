@@ -34,6 +34,12 @@ std::vector<double> diameters_for(const Grading& grading, const SceneSettings& s
   return diameters;
 }
 
+double area_of(const std::vector<Grain>& grains) {
+  double area = 0;
+  for (const Grain& grain : grains) area += std::numbers::pi / 4 * grain.diameter * grain.diameter;
+  return area;
+}
+
 // Grains laid so far, found by the cell that their centre is in.
 class LaidGrains {
  public:
@@ -46,12 +52,13 @@ class LaidGrains {
   void add(const Grain& grain) {
     cells_[row(grain.position.y()) * columns_ + column(grain.position.x())].push_back(grain);
   }
-  // Calls `look` with every grain that may be nearer than a largest diameter.
+  // Calls `look` with every grain that may be nearer than a largest diameter, as long as it returns true.
   template <class Look>
   void around(double x, double y, Look look) const {
     for (int r = std::max(row(y) - 1, 0); r <= std::min(row(y) + 1, rows_ - 1); ++r)
       for (int c = std::max(column(x) - 1, 0); c <= std::min(column(x) + 1, columns_ - 1); ++c)
-        for (const Grain& grain : cells_[r * columns_ + c]) look(grain);
+        for (const Grain& grain : cells_[r * columns_ + c])
+          if (!look(grain)) return;
   }
 
  private:
@@ -129,6 +136,7 @@ class Layout {
         const double apart = std::hypot(at.x() - below.position.x(), at.y() - below.position.y());
         if (apart < reach)
           at.z() = std::max(at.z(), below.position.z() + std::sqrt(reach * reach - apart * apart));
+        return true;
       });
       return true;
     }
@@ -138,7 +146,7 @@ class Layout {
     laid_.around(at.x(), at.y(), [&](const Grain& other) {
       double reach = r + other.diameter / 2;
       if (settings_.layout == GrainLayout::apart) reach += 0.15 * r + gap_;
-      free &= std::hypot(at.x() - other.position.x(), at.y() - other.position.y()) >= reach;
+      return free = std::hypot(at.x() - other.position.x(), at.y() - other.position.y()) >= reach;
     });
     return free;
   }
@@ -176,10 +184,13 @@ RockScene make_scene(const Grading& grading, const SceneSettings& settings) {
   Layout layout(settings, grading);
   for (const auto& [d, height] : wanted) {
     const auto at = layout.place(d, height, scene.grains);
-    if (!at)
-      throw std::invalid_argument(
+    if (!at) {
+      const double laid = area_of(scene.grains) / (settings.width * settings.height);
+      throw NoRoom(
           fmt::format("no room for a grain of {:.3g} m after {} of {} grains: take a coverage below {:.2g}",
-                      d, scene.grains.size(), wanted.size(), settings.coverage));
+                      d, scene.grains.size(), wanted.size(), settings.coverage),
+          laid);
+    }
     Grain grain;
     grain.id = static_cast<std::int64_t>(scene.grains.size()) + 1;
     grain.position = *at;
@@ -189,6 +200,18 @@ RockScene make_scene(const Grading& grading, const SceneSettings& settings) {
     scene.grains.push_back(grain);
   }
   return scene;
+}
+
+RockScene make_scene_with_room(const Grading& grading, SceneSettings& settings) {
+  for (;;) {
+    try {
+      return make_scene(grading, settings);
+    } catch (const NoRoom& none) {
+      const double less = std::floor(100 * std::min(none.coverage, settings.coverage - 0.01) + 1e-9) / 100;
+      if (!(less > 0)) throw;
+      settings.coverage = less;
+    }
+  }
 }
 
 RockScene view_of_slope(const std::vector<Grain>& pile, const std::vector<Grain>& ground, double slope_deg,
@@ -206,7 +229,8 @@ RockScene view_of_slope(const std::vector<Grain>& pile, const std::vector<Grain>
     high = high.cwiseMax((at.array() + grain.diameter / 2).matrix());
   }
   const Vec3 corner(low.x() - margin, low.y() - margin, low.z());
-  RockScene scene{high.x() - low.x() + 2 * margin, high.y() - low.y() + 2 * margin, pile, ground};
+  RockScene scene{
+      high.x() - low.x() + 2 * margin, high.y() - low.y() + 2 * margin, pile, ground, slope_deg, -corner.y()};
   for (auto* grains : {&scene.grains, &scene.ground})
     for (Grain& grain : *grains) grain.position = turned(grain.position) - corner;
   return scene;

@@ -1,6 +1,7 @@
 #pragma once
 // What a virtual photograph is taken of: spheres as a camera sees them, with known sizes.
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ struct RockScene {
   double width = 0, height = 0;  ///< of what is seen, m
   std::vector<Grain> grains;
   std::vector<Grain> ground;  ///< spheres that belong to the ground: seen, not counted
+  double slope_deg = 0;       ///< of a pile: the slope at right angles to which it is seen
+  double origin_down = 0;     ///< of a pile: its origin, m down the picture
 };
 
 /// How grains of a made-up scene lie: each for itself; outline against outline; on top of one another.
@@ -30,9 +33,19 @@ struct SceneSettings {
   std::uint64_t seed = 1;
 };
 
+/// That a scene's coverage is more than its grains find room for.
+struct NoRoom : std::invalid_argument {
+  NoRoom(const std::string& what, double laid) : invalid_argument(what), coverage(laid) {}
+  double coverage;  ///< of those that found it
+};
+
 /// A scene whose grains follow a grading; all lie wholly within the picture. Throws std::invalid_argument if
-/// the largest grain does not fit, or the coverage cannot be reached.
+/// the largest grain does not fit, NoRoom if the coverage cannot be reached.
 RockScene make_scene(const Grading& grading, const SceneSettings& settings);
+
+/// The same where settings.coverage is what is wished: as long as the grains find no room it is lowered to
+/// that of those which did, in hundredths. Throws as make_scene; NoRoom where a hundredth is too much.
+RockScene make_scene_with_room(const Grading& grading, SceneSettings& settings);
 
 /// A pile seen at right angles to its slope. `slope_deg`: of the slope, falling towards +x. Grains and ground
 /// are turned into the camera's frame, the crest at the top; the picture ends where the rock does, with

@@ -152,4 +152,32 @@ TEST_F(Analyse, ValidateNamesWhatIsWrongWithADataset) {
   EXPECT_EQ(call("validate " + file.string() + " --set material.mu=1").code, 2);
 }
 
+// The bench of small_dump: 4 m, its face at 45 degrees. A pile on it at 37 degrees, mirrored, and shifted.
+TEST_F(Analyse, APileThatIsNotAtTheBenchIsNoted) {
+  const auto pile = [&](const std::string& name, double sign, double shift) {
+    std::ofstream out(folder / name);
+    out << "x,y,z,diameter\n";
+    const double fall = std::tan(37 * std::numbers::pi / 180), d = 0.3;
+    for (double x = 0; x < 4 / fall; x += d)
+      for (double y = -3; y <= 3; y += d)
+        for (double z = std::max(4 - x, 0.0) + d / 2; z <= std::max(4 - x * fall, d); z += d)
+          out << sign * x + shift << "," << y << "," << z << "," << d << "\n";
+    out.close();
+    return call("analyse " + (folder / name).string() + " --scenario " + source +
+                "/scenarios/small_dump.yaml")
+        .text;
+  };
+  const std::string there = pile("there.csv", 1, 0), mirrored = pile("mirrored.csv", -1, 0),
+                    shifted = pile("shifted.csv", 1, 45);
+  EXPECT_THAT(there, HasSubstr("slope_angle_deg"));
+  const std::string inside = "of the mass lies behind the crest (x < 0)", beyond = "beyond the toe (x = 4 m)",
+                    no_angle =
+                        "note: no slope angle; too little of the pile's surface lies between 0.6 and 3.4 m";
+  for (const std::string& note : {inside, beyond, no_angle}) EXPECT_THAT(there, Not(HasSubstr(note)));
+  EXPECT_THAT(mirrored, HasSubstr(inside));
+  EXPECT_THAT(mirrored, Not(HasSubstr(beyond)));
+  EXPECT_THAT(mirrored, HasSubstr(no_angle));
+  EXPECT_THAT(shifted, HasSubstr("100 % of the mass lies more than 2 m " + beyond));
+}
+
 }  // namespace

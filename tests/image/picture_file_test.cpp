@@ -1,12 +1,15 @@
 // Pictures as files, good and bad, through the program as a user calls it.
 #include "analysis/image/picture_file.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgproc.hpp>
+#include <sstream>
 
 #include "analysis/image/scale_target.h"
 #include "sim/material/input_text.h"
@@ -149,6 +152,24 @@ TEST_F(PictureFile, NamesOfSectionsCanBeRead) {
   }
 }
 
+// Sixteen equal small discs above, and one of nine times their diameter among as many below: of spheres
+// 729 / (729 + 16) of the mass.
+TEST_F(PictureFile, ASectionThatIsOneGrainIsNoted) {
+  cv::Mat3b picture(600, 800, cv::Vec3b(60, 60, 60));
+  for (int k = 0; k < 16; ++k)
+    for (const int y : {100, 570})
+      cv::circle(picture, {30 + 48 * k, y}, 10, cv::Scalar(190, 190, 190), cv::FILLED);
+  cv::circle(picture, {400, 430}, 94, cv::Scalar(190, 190, 190), cv::FILLED);  // 189 px to 21
+  write_picture(folder_ / "block.png", picture);
+  const fs::path out = folder_ / "out";
+  const Called called = call("image " + (folder_ / "block.png").string() +
+                             " --scale 1cm/px --model sphere --sections 2 --out " + out.string());
+  ASSERT_EQ(called.code, 0) << called.text;
+  EXPECT_THAT(called.text, testing::ContainsRegex("note: one grain is 9[89] % of the mass of S2:"));
+  EXPECT_THAT(called.text, Not(HasSubstr("of the mass of S1")));
+  EXPECT_THAT(slurp(out / "report.html"), HasSubstr("of the mass of S2"));
+}
+
 // A picture and its copy have no scatter between repeats: nothing is left for a dataset, and nothing is
 // written.
 TEST_F(PictureFile, ARefusedDatasetLeavesNothing) {
@@ -177,12 +198,40 @@ TEST_F(PictureFile, ADatasetComparesSectionsOfTheSameCut) {
              " --scale 1cm/px --sections " + sections + " --scenario " SCREE_TEST_ASSETS "/../scenarios/" +
              scenario + " --out " + out.string());
     EXPECT_EQ(called.code, 0) << called.text;
+    EXPECT_THAT(called.text, HasSubstr("note: the whole picture is taken for the slope"));
     return slurp(out / "dataset.yaml") + slurp(out / "observables.csv");
   };
   // Three sections and no others; six, and three beside them.
   EXPECT_THAT(dataset("small_dump.yaml", "2"), AllOf(HasSubstr("output.sections: 2"), HasSubstr("chi_S2,")));
   EXPECT_THAT(dataset("canadian_malartic_10m.yaml", "3"),
               AllOf(Not(HasSubstr("output.sections")), HasSubstr("chi_S3of3,"), HasSubstr("d50_m_S1of3,")));
+}
+
+// A dump of scree: its file says which bench it is of, and the region is printed and kept in the truth.
+TEST_F(PictureFile, APileIsShownWithTheRegionOfItsSlope) {
+  const fs::path run = folder_ / "run";
+  const Called ran =
+      call("run " SCREE_TEST_ASSETS "/../scenarios/small_dump.yaml --seeds 1 --out " + run.string());
+  ASSERT_EQ(ran.code, 0) << ran.text;
+  fs::path file;
+  for (const auto& entry : fs::recursive_directory_iterator(run))
+    if (entry.path().filename() == "particles.h5") file = entry.path();
+  ASSERT_FALSE(file.empty());
+  const std::string photo = (folder_ / "pile.png").string();
+  const Called made = call("render " + photo + " --scale 2cm/px --snapshot " + file.string());
+  ASSERT_EQ(made.code, 0) << made.text;
+  const std::string said = "slope, crest to toe of the run's bench: --region \"";
+  const auto at = made.text.find(said);
+  ASSERT_NE(at, std::string::npos) << made.text;
+  const auto from = at + said.size();
+  const std::string region = made.text.substr(from, made.text.find('"', from) - from);
+  EXPECT_THAT(made.text.substr(from), HasSubstr("--sections 3"));
+  EXPECT_THAT(slurp(folder_ / "pile.truth.csv"), HasSubstr("# region = " + region + "\n"));
+  const std::string image = "image " + photo + " --sections 3 --force --out " + (folder_ / "out").string() +
+                            " --truth " + (folder_ / "pile.truth.csv").string();
+  const std::string note = "note: the whole picture is taken for the slope";
+  EXPECT_THAT(call(image).text, AllOf(HasSubstr(note), HasSubstr(region)));
+  EXPECT_THAT(call(image + " --region \"" + region + "\"").text, Not(HasSubstr(note)));
 }
 
 TEST_F(PictureFile, ARegionBeyondThePictureIsTold) {
@@ -234,9 +283,43 @@ TEST_F(PictureFile, RenderAndImageWorkTogether) {
            " --target-diameter 40mm --detection-limit 0.3 --model sphere --sections 2 --truth " +
            (folder_ / "a.truth.csv").string() + " --out " + (folder_ / "out").string());
   ASSERT_EQ(seen.code, 0) << seen.text;
-  EXPECT_THAT(seen.text, HasSubstr("known rock: D50"));
+  // D10, D50, D80 and mass, each measured, known, and its error.
+  const auto row = [&](const std::string& name) {
+    std::array<double, 4> values{};
+    std::istringstream words(seen.text.substr(seen.text.find("\n  " + name) + 3 + name.size()));
+    for (double& value : values) words >> value;
+    return values;
+  };
+  const auto measured = row("measured"), known = row("known"), error = row("error, %");
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_GT(known[k], 0) << seen.text;
+    EXPECT_NEAR(error[k], 100 * (measured[k] / known[k] - 1), 0.3) << seen.text;
+  }
+  EXPECT_LT(known[0], known[1]);
+  EXPECT_LT(known[1], known[2]);
+  EXPECT_THAT(seen.text,
+              HasSubstr(fmt::format("{:.0f} % of the known mass is seen", 100 * measured[3] / known[3])));
+  EXPECT_THAT(slurp(folder_ / "out/report.html"),
+              AllOf(HasSubstr("D10 of visible rock"), HasSubstr("of the known mass is seen")));
   EXPECT_THAT(slurp(folder_ / "out" / "effects.yaml"), HasSubstr("image_blur:"));
   EXPECT_THAT(slurp(folder_ / "out" / "bias.csv"), HasSubstr("detected_share"));
+}
+
+// Rock that does not cover 0.35 of a picture with gaps between grains of half its smallest diameter.
+TEST_F(PictureFile, ACoverageThatIsNotGivenIsLoweredUntilTheRockFits) {
+  const std::string command =
+      "render --pixels 640x480 --scale 3cm/px --force --grading " +
+      write("rock.csv", "diameter_mm,passing_pct\n200,0\n300,31.5\n500,64\n1000,100\n").string() + " ";
+  const std::string a = (folder_ / "a.png").string(), b = (folder_ / "b.png").string();
+  const Called lowered = call(command + a), again = call(command + b);
+  ASSERT_EQ(lowered.code, 0) << lowered.text;
+  EXPECT_THAT(lowered.text,
+              testing::ContainsRegex("coverage: 0\\.[23][0-9]; at 0\\.35 this rock finds no room"));
+  EXPECT_EQ(again.code, 0);
+  EXPECT_EQ(slurp(a), slurp(b));
+  const Called given = call(command + a + " --coverage 0.35");
+  EXPECT_EQ(given.code, 2);
+  EXPECT_THAT(given.text, HasSubstr("take a coverage below 0.35"));
 }
 
 TEST_F(PictureFile, OfNoKnownGrainNoEffectsAreMade) {

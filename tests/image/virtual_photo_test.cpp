@@ -1,6 +1,7 @@
 // The whole chain on virtual photographs, whose truth is known.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +9,7 @@
 
 #include "analysis/image/image_bias.h"
 #include "analysis/image/render_photo.h"
+#include "analysis/image/slope_view.h"
 #include "sim/material/input_text.h"
 #include "sim/material/random.h"
 
@@ -113,13 +115,15 @@ TEST(VirtualPhoto, ShadowsFallAwayFromTheSun) {
 }
 
 TEST(VirtualPhoto, TruthSurvivesItsFile) {
-  const Photo photo = photo_of(GrainLayout::overlapping, 0.6, kSuns[0]);
+  Photo photo = photo_of(GrainLayout::overlapping, 0.6, kSuns[0]);
+  photo.truth.region = "0,10 999,700";
   const auto file = std::filesystem::temp_directory_path() / "scree_photo_truth_test.csv";
   std::ofstream(file) << truth_csv(photo.truth);
   const PhotoTruth read = read_truth(file);
   ASSERT_EQ(read.grains.size(), photo.truth.grains.size());
   EXPECT_NEAR(read.m_per_px, photo.truth.m_per_px, 1e-9);
   EXPECT_NEAR(read.scene_d50, photo.truth.scene_d50, 1e-6);
+  EXPECT_EQ(read.region, photo.truth.region);
   EXPECT_NEAR(read.grains[5].diameter, photo.truth.grains[5].diameter, 1e-5);
   EXPECT_NEAR(read.grains[5].visible_share, photo.truth.grains[5].visible_share, 1e-3);
   std::ofstream(file) << "id,x_px\n1,2\n";
@@ -372,6 +376,62 @@ TEST(Scene, OfAPileIsSeenFromTheToe) {
   EXPECT_NEAR(scene.grains[1].position.z(), scene.grains[0].position.z(), 1e-9);
   EXPECT_NEAR(scene.grains[0].position.y(), 1.5, 1e-9);  // half a diameter and the margin
   EXPECT_NEAR(scene.width, 3 + 1 + 2, 1e-9);
+}
+
+// A pile on a slope of 35 degrees from a crest of 10 m, rock on the bench's top and on the floor.
+std::vector<Grain> pile_on_a_slope() {
+  const double fall = std::tan(35 * M_PI / 180), toe = 10 / fall, d = 0.4;
+  std::vector<Grain> pile;
+  for (double x = -6; x < toe + 6; x += 0.3)
+    for (double y = -6; y <= 6; y += 0.35) {
+      const double surface = std::clamp(10 - x * fall, 0.0, 10.0);
+      // Its top lies on the surface along the normal.
+      const double z = surface - (x > 0 && x < toe ? d / 2 / std::cos(35 * M_PI / 180) : d / 2);
+      pile.push_back({.id = static_cast<std::int64_t>(pile.size()) + 1,
+                      .position = {x, y, z},
+                      .diameter = d,
+                      .mass = 100});
+    }
+  return pile;
+}
+
+TEST(SlopeRegion, IsWhereTheRunHasItsSections) {
+  const std::vector<Grain> pile = pile_on_a_slope();
+  const auto slope = slope_of_pile(pile, 10);
+  ASSERT_TRUE(slope);
+  EXPECT_NEAR(slope->angle, 35, 1);
+  EXPECT_NEAR(slope->crest_x, 0, 0.4);
+  EXPECT_NEAR(slope->toe_x, 10 / std::tan(35 * M_PI / 180), 0.4);
+  const RockScene scene = view_of_slope(pile, {}, slope->angle, 0.5);
+  const double m_per_px = 0.02;
+  const auto corners = slope_region(scene, *slope, m_per_px);
+  ASSERT_TRUE(corners);
+  const auto [left, top, right, bottom] = *corners;
+  EXPECT_EQ(left, 0);
+  EXPECT_NEAR(right, scene.width / m_per_px, 1.5);
+  // Sections by height in the picture's region are those by height in the pile, but for grains at borders.
+  const PhotoRegion region(
+      {static_cast<int>(scene.width / m_per_px), static_cast<int>(scene.height / m_per_px)},
+      {{left, top}, {right, top}, {right, bottom}, {left, bottom}});
+  int on_slope = 0, same = 0;
+  for (std::size_t i = 0; i < pile.size(); ++i) {
+    const Vec3& at = pile[i].position;
+    if (at.x() < 0.3 || at.x() > slope->toe_x - 0.3) continue;
+    ++on_slope;
+    const double y = scene.grains[i].position.y() / m_per_px;
+    const double surface = 10 - at.x() * std::tan(35 * M_PI / 180);
+    same += section_of(y, region, 5) == std::min(4, static_cast<int>((10 - surface) / 2));
+  }
+  EXPECT_GT(on_slope, 1000);
+  EXPECT_GT(same, 0.85 * on_slope);
+  // Nothing is known of the bench: from the surface at its highest, which is the same here.
+  const auto fitted = slope_of_pile(pile, std::nullopt);
+  ASSERT_TRUE(fitted);
+  EXPECT_NEAR(fitted->crest_z, 10, 0.3);
+  // A pile that falls towards -x has none.
+  std::vector<Grain> mirrored = pile;
+  for (Grain& grain : mirrored) grain.position.x() *= -1;
+  EXPECT_FALSE(slope_of_pile(mirrored, 10));
 }
 
 }  // namespace

@@ -124,10 +124,9 @@ TEST_F(SnapshotReader, TextOfYade) {
   const SnapshotRead with_id = read(yade("id_x_y_z_r_matId", "", true, "\t0"), options);
   expect_the_pile(with_id);
   EXPECT_EQ(with_id.snapshot.grains[4].id, 14);
-  EXPECT_EQ(read("#format x_y_z_r\r\n0 0 0 500\r\n\r\n", {.length_unit = 1e-3, .density = 2760})
-                .snapshot.grains[0]
-                .diameter,
-            1);
+  options = {};
+  options.length_unit = 1e-3;
+  EXPECT_EQ(read("#format x_y_z_r\r\n0 0 0 500\r\n\r\n", options).snapshot.grains[0].diameter, 1);
   EXPECT_THAT(error("#format jointedPM\n0 0 0 1\n"),
               HasSubstr(":1: format 'jointedPM' does not name x, y, z and r"));
   EXPECT_THAT(error("#format x_y_z_r\n0 0 0 1\n0 0 1\n"),

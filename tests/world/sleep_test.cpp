@@ -166,8 +166,9 @@ TEST(Sleep, WhatIsTakenOutIsNotWoken) {
   EXPECT_EQ(b.world.statistics().asleep, 1);
   EXPECT_EQ(b.world.snapshot().grains.size(), 1u);
   for (int i = 0; i < b.world.spheres().size(); ++i)
-    if (b.world.spheres().lost[i])
+    if (b.world.spheres().lost[i]) {
       EXPECT_TRUE(b.world.spheres().velocity[i].vec().isZero() && !b.world.spheres().asleep[i]) << i;
+    }
 }
 
 // A tool goes by a millimetre from it, for longer than a ball needs to fall asleep.
