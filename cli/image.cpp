@@ -31,7 +31,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kOverlaySide = 1600;  // px
-constexpr int kFewestKnown = 3;     // grains for a line and a deviation about it
 
 bool settings_of(const ImageOptions& options, scree::PhotoAnalysisSettings& settings) {
   if (!options.scale.empty()) {
@@ -311,7 +310,7 @@ int run_image(const ImageOptions& options) {
     report.bias = scree::measure_bias(checked, report.settings.model);
     print_bias(*report.bias);
     scree::write_text_file(out / "bias.csv", scree::bias_csv(*report.bias));
-    if (report.bias->matched < kFewestKnown) {
+    if (!report.bias->says_something()) {
       fmt::print("note: no effects.yaml: {} known grains are detected, too few to say anything of size\n",
                  report.bias->matched);
       fs::remove(out / "effects.yaml");  // of an older analysis

@@ -20,6 +20,20 @@ struct KnownGrain {
   double ratio = 0;  // measured over true; 0: not detected
 };
 
+// Whether all that is seen of a grain lies in the region, as far as the picture shows it.
+bool lies_within(const CheckedPhoto& photo, const VisibleGrain& grain) {
+  constexpr int kDirections = 16;
+  const cv::Size picture = photo.found->region.mask().size();
+  const double reach = 0.5 * std::max(grain.visible_a, grain.visible_b) / photo.truth->m_per_px;
+  for (int k = 0; k < kDirections; ++k) {
+    const double angle = 2 * std::numbers::pi * k / kDirections;
+    const double x = std::clamp(grain.x + reach * std::cos(angle), 0.0, picture.width - 1.0),
+                 y = std::clamp(grain.y + reach * std::sin(angle), 0.0, picture.height - 1.0);
+    if (!photo.found->region.has(x, y)) return false;
+  }
+  return photo.found->region.has(grain.x, grain.y);
+}
+
 void match(const CheckedPhoto& photo, SizeModel model, std::vector<KnownGrain>& known, ImageBias& bias) {
   std::map<int, const ImageGrain*> outline;
   for (const ImageGrain& grain : photo.found->grains) outline[grain.label] = &grain;
@@ -32,7 +46,7 @@ void match(const CheckedPhoto& photo, SizeModel model, std::vector<KnownGrain>& 
   const std::set<int> cut(photo.found->cut.begin(), photo.found->cut.end());
   std::vector<const VisibleGrain*> whole;
   for (const VisibleGrain& grain : photo.truth->grains)
-    if (photo.found->region.has(grain.x, grain.y) && !cut.contains(label_at(grain))) whole.push_back(&grain);
+    if (lies_within(photo, grain) && !cut.contains(label_at(grain))) whole.push_back(&grain);
   for (const VisibleGrain* grain : whole) {
     const int label = label_at(*grain);
     if (!outline.contains(label)) continue;

@@ -32,6 +32,9 @@ struct ImageBias {
   double width = 0;     ///< standard deviation of ln(measured / true) about that line
   int outlines = 0;     ///< found
   int matched = 0;      ///< of which belong to a known grain
+
+  /// Enough for a line and a deviation about it.
+  bool says_something() const { return matched >= 3; }
 };
 
 /// Known (true_gradings) and measured values side by side.
@@ -50,8 +53,9 @@ struct TruthCheck {
 std::string bodies_in_words(const PhotoAnalysisSettings& settings);
 
 /// Grains found in one picture and its truth. A known grain belongs to the outline that has the middle of
-/// what is seen of it; where an outline has several, the one of which most is seen. Those outside the region
-/// are left out, and those whose outline its border cuts: others count for them.
+/// what is seen of it; where an outline has several, the one of which most is seen. Those that do not lie
+/// wholly within the region are left out, detected or not, and those whose outline its border cuts: others
+/// count for them.
 struct CheckedPhoto {
   const PhotoAnalysis* found;
   const PhotoTruth* truth;

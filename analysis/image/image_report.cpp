@@ -144,13 +144,17 @@ std::string check_table(const TruthCheck& check, const std::string& bodies) {
 }
 
 std::string bias_words(const ImageBias& bias) {
+  if (!bias.says_something())
+    return fmt::format("<p>Of {} outlines {} belong to a known grain: too few to say anything of size.</p>\n",
+                       bias.outlines, bias.matched);
   std::string half = detection_in_words(bias);
   half[0] = static_cast<char>(std::toupper(half[0]));
   return fmt::format(
       "<p>Of {} outlines {} belong to a known grain. {}. The ratio of measured to true diameter grows with "
-      "size to the power {}; about that, ln d scatters by {}. In this form the effects detection_limit, "
-      "image_blur and image_shape_bias take it: effects.yaml.</p>\n",
-      bias.outlines, bias.matched, half, decimals_text(bias.exponent, 3), decimals_text(bias.width, 3));
+      "size to the power {}; about that, ln d scatters by {}. In this form the effects {}image_blur and "
+      "image_shape_bias take it: effects.yaml.</p>\n",
+      bias.outlines, bias.matched, half, decimals_text(bias.exponent, 3), decimals_text(bias.width, 3),
+      bias.limit ? "detection_limit, " : "");
 }
 
 }  // namespace

@@ -203,7 +203,7 @@ TEST(ImageBias, OfPerfectDetectionHasNoLimit) {
 ImageBias bias_where(bool (*detected)(int grain), const std::vector<cv::Point>& region = {}) {
   PhotoAnalysis found;
   PhotoTruth truth;
-  truth.m_per_px = 0.01;
+  truth.m_per_px = 1;
   truth.scene_d50 = 0.5;
   found.labels.of = cv::Mat1i(10, 20, 0);
   found.labels.count = 20;
