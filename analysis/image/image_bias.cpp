@@ -44,22 +44,20 @@ void match(const CheckedPhoto& photo, SizeModel model, std::vector<KnownGrain>& 
     return x >= 0 && y >= 0 && x < labels.cols && y < labels.rows ? labels(y, x) : 0;
   };
   const std::set<int> cut(photo.found->cut.begin(), photo.found->cut.end());
-  std::vector<const VisibleGrain*> whole;
-  for (const VisibleGrain& grain : photo.truth->grains)
-    if (lies_within(photo, grain) && !cut.contains(label_at(grain))) whole.push_back(&grain);
-  for (const VisibleGrain* grain : whole) {
-    const int label = label_at(*grain);
+  for (const VisibleGrain& grain : photo.truth->grains) {
+    const int label = label_at(grain);
     if (!outline.contains(label)) continue;
     const VisibleGrain*& best = owner[label];
-    if (best == nullptr || grain->visible_area > best->visible_area) best = grain;
+    if (best == nullptr || grain.visible_area > best->visible_area) best = &grain;
   }
-  for (const VisibleGrain* grain : whole) {
-    const int label = label_at(*grain);
+  for (const VisibleGrain& grain : photo.truth->grains) {
+    const int label = label_at(grain);
+    if (!lies_within(photo, grain) || cut.contains(label)) continue;
     const auto found = owner.find(label);
-    const bool detected = found != owner.end() && found->second == grain;
+    const bool detected = found != owner.end() && found->second == &grain;
     known.push_back(
-        {grain->diameter,
-         detected ? outline[label]->size[static_cast<std::size_t>(model)].diameter / grain->diameter : 0});
+        {grain.diameter,
+         detected ? outline[label]->size[static_cast<std::size_t>(model)].diameter / grain.diameter : 0});
   }
   bias.outlines += static_cast<int>(outline.size());
   bias.matched += static_cast<int>(owner.size());
@@ -167,7 +165,7 @@ ImageBias measure_bias(const std::vector<CheckedPhoto>& photos, SizeModel model)
 std::string detection_in_words(const ImageBias& bias) {
   if (bias.matched == 0) return "no known grain is detected";
   if (!bias.limit)
-    return "the share detected passes one half nowhere among the known diameters: no limit is told";
+    return "the share detected does not rise through one half among the known diameters: no limit is told";
   if (*bias.limit == 0) return "every known grain is detected";
   return fmt::format("half of the known grains are detected at {} m ({} of D50, steepness {})",
                      number_text(*bias.limit), number_text(*bias.limit / bias.reference),

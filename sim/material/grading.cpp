@@ -154,7 +154,7 @@ Grading Grading::with_fines(double share, double ratio) const {
   return Grading(name_, std::move(points));
 }
 
-Grading read_grading(const std::filesystem::path& file, std::optional<double> scalped_at) {
+Grading read_grading(const std::filesystem::path& file, std::optional<double> from) {
   DelimitedTable table(file, kMostFileBytes);
   const Columns columns = columns_of(file, table);
   struct Row {
@@ -188,26 +188,26 @@ Grading read_grading(const std::filesystem::path& file, std::optional<double> sc
   if (rows.back().passing != 100)
     throw FileError(file, rows.back().line,
                     fmt::format("the largest diameter must have passing 100, not {}", rows.back().passing));
-  const double from = scalped_at.value_or(0);
-  if (rows.front().passing != 0 && !(from > 0))
-    throw FileError(
-        file, rows.front().line,
-        fmt::format("the smallest diameter must have passing 0, not {}{}", rows.front().passing,
-                    scalped_at ? "; grading_from_m leaves out what is finer than a diameter" : ""));
-  if (rows.front().passing != 0 && from < rows.front().diameter)
+  const double finest = from.value_or(0);
+  if (rows.front().passing != 0 && !(finest > 0))
+    throw FileError(file, rows.front().line,
+                    fmt::format("the smallest diameter must have passing 0, not {}{}", rows.front().passing,
+                                from ? "; grading_from_m leaves out what is finer than a diameter" : ""));
+  if (rows.front().passing != 0 && finest < rows.front().diameter)
     throw FileError(
         file, rows.front().line,
         fmt::format("{} % of the rock are finer than {:g} m, and the table does not say how fine; "
                     "grading_from_m must be {:g} or more",
                     rows.front().passing, rows.front().diameter, rows.front().diameter));
   const auto all = std::find_if(rows.begin(), rows.end(), [](const Row& row) { return row.passing == 100; });
-  if (from >= all->diameter)
+  if (finest >= all->diameter)
     throw FileError(
         file, all->line,
-        fmt::format("no rock is coarser than {:g} m, and grading_from_m is {:g}", all->diameter, from));
+        fmt::format("no rock is coarser than {:g} m, and grading_from_m is {:g}", all->diameter, finest));
   std::vector<Grading::Point> points;
   for (const Row& row : rows) points.push_back({row.diameter, row.passing / 100});
-  return Grading(file.stem().string(), from >= points.front().diameter ? coarser_than(from, points) : points);
+  return Grading(file.stem().string(),
+                 finest >= points.front().diameter ? coarser_than(finest, points) : points);
 }
 
 }  // namespace scree

@@ -165,9 +165,9 @@ RunOutcome run_push_dump(const Scenario& scenario, const PushDump& e, std::uint6
   const double toe = toe_of(e.bench), half = 0.5 * e.bench.width;
   const double ground = standing_height(e.bench);
   const Vec3 low(-e.bench.top_length - 2, -half - 2, -3);
-  // Heaps at one place are laid upon each other.
+  // Loads at one place are laid upon what is left of each other.
   const int places = static_cast<int>(e.points.size() * e.rows.size());
-  const int stacked = e.side_walls ? 1 : (e.dumps + places - 1) / places;
+  const int stacked = (e.dumps + places - 1) / places;
   const Vec3 high(toe + e.bench.floor_length + 2, half + 2,
                   ground + 3 * e.load_box.norm() + (stacked - 1) * 2 * e.load_box.z());
   Stage stage(scenario, seed, threads, hooks, low, high);

@@ -148,9 +148,9 @@ struct DropTest {
 struct StopRule {
   double speed = 0.1;  ///< m/s
   double moving_mass_share = 0.01;
-  double min_time = 1.0;  ///< s after the release; a load that has not moved yet is at rest after the default
-                          ///< at the earliest
-  double max_time = 60;   ///< s after the release; reaching it is reported
+  double min_time = 1.0;  ///< s after the release, of a load, bed or blade; where nothing has moved since,
+                          ///< the default at least
+  double max_time = 60;  ///< s after the release; reaching it is reported
 };
 
 struct Numerics {

@@ -70,7 +70,8 @@ Fields keys(BenchSpec& b) {
 Fields keys(TruckSpec& t) {
   return {
       {"bed_mesh", MeshFile{&t.bed_mesh, "meshes/truck_bed.stl", &t.scale},
-       "Mesh of the truck bed; origin at the middle of the discharge lip, bed along -x, z up."},
+       "Mesh of the truck bed; origin at the middle of the discharge lip, bed along -x, z up (in glTF and "
+       "GLB y)."},
       {"gate_mesh", MeshFile{&t.gate_mesh, "meshes/truck_gate.stl", &t.scale},
        "Mesh of the gate that holds the load while it settles, same frame; it is taken away then."},
       {"mesh_scale", Number{&t.scale, "m", kScale}, kScaleDoc},
@@ -103,7 +104,8 @@ Fields keys(EndDump& e) {
 Fields keys(BladeSpec& b) {
   return {
       {"mesh", MeshFile{&b.mesh, "meshes/push_wall.stl", &b.scale},
-       "Mesh of the blade; origin at the middle of the cutting edge, front towards +x, z up."},
+       "Mesh of the blade; origin at the middle of the cutting edge, front towards +x, z up (in glTF and GLB "
+       "y)."},
       {"mesh_scale", Number{&b.scale, "m", kScale}, kScaleDoc},
       {"velocity_m_per_s", Number{&b.velocity, "m/s", {0.001, 10}}, "Speed of the push."},
       {"overshoot_m", Number{&b.overshoot, kMetre, {-10, 10}}, "How far beyond the crest the blade goes."},
@@ -177,7 +179,7 @@ Fields keys(ReposeLift& r) {
 Fields bucket_keys(BucketDump& b) {
   return {
       {"mesh", MeshFile{&b.container_mesh, "meshes/bucket_segregation.stl", &b.scale},
-       "Mesh of the bucket; origin at the centre of its inner bottom, mouth towards z."},
+       "Mesh of the bucket; origin at the centre of its inner bottom, mouth towards z (in glTF and GLB y)."},
       {"mesh_scale", Number{&b.scale, "m", kScale}, kScaleDoc},
       {"diameter_m", Number{&b.diameter, kMetre, {0.01, 50}}, "Inner diameter."},
       {"height_m", Number{&b.height, kMetre, {0.01, 50}}, "Inner height."},
@@ -246,7 +248,7 @@ Fields keys(StopRule& s) {
       {"moving_mass_share", Number{&s.moving_mass_share, kNone, {0, 1, true, true}},
        "The load is at rest when less than this share of its mass is moving."},
       {"min_time_s", Number{&s.min_time, kSecond, {0, 1e5}},
-       "Least time after the release. A load that has not moved yet is waited for at least 1 s."},
+       "Least time after the release. Where nothing has moved since, it is 1 s."},
       {"max_time_s", Number{&s.max_time, kSecond, {0, 1e5, true, false}},
        "Most time after the release; reaching it is reported."},
   };

@@ -199,6 +199,7 @@ void RockWorld::set_velocity(std::int64_t id, const Vec3& velocity, const Vec3& 
   const auto at = std::find(spheres_.id.begin(), spheres_.id.end(), id);
   if (at == spheres_.id.end()) throw std::out_of_range(fmt::format("no sphere has the number {}", id));
   const auto i = static_cast<int>(at - spheres_.id.begin());
+  if (spheres_.lost[i]) return;
   const int other = spheres_.partner.empty() ? -1 : spheres_.partner[i];
   if (other >= 0) {
     const Vec3 arm = 0.5 * (spheres_.place[i].vec() - spheres_.place[other].vec());

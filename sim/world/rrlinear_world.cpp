@@ -580,7 +580,8 @@ double RrlinearWorld::potential_energy(int i) const {
     for (const Neighbour& n : pairs_.neighbours(i))
       if (n.touching() && (n.sphere >= spheres_.movable || spheres_.asleep[n.sphere]))
         energy -= pull_work(i, n);
-  for (int k = 0; k < facets_.count(i); ++k) energy -= pull_work(facets_.contact(i, k), i);
+  for (int k = 0; k < facets_.count(i); ++k)
+    if (const MeshContact& c = facets_.contact(i, k); meshes_[c.body]) energy -= pull_work(c, i);
   return energy;
 }
 

@@ -170,7 +170,7 @@ TEST(ScenarioEffects, ThatChangeNothingInThisScenarioAreAWarning) {
     EXPECT_THAT(result.errors, IsEmpty());
     return result.warnings;
   };
-  // A bed that is hoisted has no gate that opens.
+  // A load gets its speed when the gate of a tilted bed opens; a level one slides only when it is hoisted.
   const std::string speed = "effects.release_speed.speed_m_per_s=1";
   EXPECT_THAT(warnings(speed, "experiment.truck.release=open_gate"), IsEmpty());
   EXPECT_THAT(

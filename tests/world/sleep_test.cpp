@@ -143,10 +143,13 @@ TEST(Sleep, SleeperOnWhatIsTakenOutWakes) {
 }
 
 // Rock that slept on the floor is given a velocity in the moment in which a mesh elsewhere is taken away.
+// What is removed is the wall that it touches, as the gate of a truck.
 TEST(Sleep, PushWakesWhileTheSceneChanges) {
   Bench b({ball({0, 0, kRadius})});
-  const int other = b.world.add_mesh(make_box({5, 5, 0}, {6, 6, 1}), {0.4, 0.4}, Motion::fixed(Pose{}));
+  const int other =
+      b.world.add_mesh(make_box({0.999 * kRadius, -1, 0}, {1, 1, 1}), {0.4, 0.4}, Motion::fixed(Pose{}));
   b.world.advance_to(10);
+  ASSERT_FALSE(b.world.mesh_contacts(0).empty());
   ASSERT_EQ(b.world.statistics().asleep, 1);
   const double x = b.grain(0).position.x();
   b.world.remove_mesh(other);
