@@ -30,6 +30,7 @@ double freedom_of_log(double freedom) {
 struct Repeated {
   std::vector<Eigen::Index> uncorrelated;
   std::vector<std::vector<Eigen::Index>> correlated;
+  std::vector<std::vector<Eigen::Index>> with_shared_errors;  // correlated, and by more than scatter
 };
 
 bool has_repeats(const MeasuredValue& value) {
@@ -55,18 +56,25 @@ Repeated repeated_values(const Measurements& measured, std::size_t experiment,
     return value.uncertainty * value.uncertainty <=
            kAllOfIt * *value.std * *value.std / static_cast<double>(*value.repeats);
   };
+  const auto repeats = [&](Eigen::Index k) {
+    return has_repeats(measured.values[static_cast<std::size_t>(k)]);
+  };
   const auto varies = [&](Eigen::Index k) {
-    const MeasuredValue& value = measured.values[static_cast<std::size_t>(k)];
-    return value.experiment == experiment && has_repeats(value) && seed_variance[k - all.front()] > 0;
+    return measured.values[static_cast<std::size_t>(k)].experiment == experiment &&
+           seed_variance[k - all.front()] > 0;
   };
   Repeated repeated;
   for (const Eigen::Index k : all) {
     const std::vector<Eigen::Index> group = correlated_with(measured.covariance, k);
-    if (group.front() != k || !std::all_of(group.begin(), group.end(), varies)) continue;
-    if (group.size() == 1)
-      repeated.uncorrelated.push_back(k);
-    else if (std::all_of(group.begin(), group.end(), is_scatter))
+    const auto all_are = [&](auto&& is) { return std::all_of(group.begin(), group.end(), is); };
+    if (group.front() != k || !all_are(repeats)) continue;
+    const bool as_simulated = all_are(varies);
+    if (group.size() > 1 && !(as_simulated && all_are(is_scatter)))
+      repeated.with_shared_errors.push_back(group);
+    else if (group.size() > 1)
       repeated.correlated.push_back(group);
+    else if (as_simulated)
+      repeated.uncorrelated.push_back(k);
   }
   return repeated;
 }
@@ -155,6 +163,13 @@ Eigen::MatrixXd scatter_by_simulation(const Measurements& measured, const std::v
   return scatter;
 }
 
+int fewest_repeats(const Measurements& measured, const std::vector<Eigen::Index>& values) {
+  int repeats = std::numeric_limits<int>::max();
+  for (const Eigen::Index k : values)
+    repeats = std::min(repeats, *measured.values[static_cast<std::size_t>(k)].repeats);
+  return repeats;
+}
+
 // How many tests the simulation's scatter counts beside those of values whose correlations are stated.
 double like_the_simulation(std::size_t values, int repeats) {
   const double p = static_cast<double>(values);
@@ -194,6 +209,13 @@ WorkingCovariance working_covariance(const Measurements& measured,
     const Eigen::Index first = of_experiment.front();
     const Eigen::MatrixXd& seeds = surfaces[e]->scatter();
     const Repeated repeated = repeated_values(measured, e, seeds.diagonal());
+    for (const auto& values : repeated.with_shared_errors) {
+      const int n = fewest_repeats(measured, values);
+      const double freedom = std::max(n - static_cast<double>(values.size()), 1.0);
+      working.matrix(values, values) *= (n - 1) / freedom;
+      working.blocks.push_back({values, freedom});
+      for (const Eigen::Index k : values) scatters[static_cast<std::size_t>(k)] = true;
+    }
     std::vector<Eigen::Index> all = repeated.uncorrelated;
     for (const auto& group : repeated.correlated) all.insert(all.end(), group.begin(), group.end());
     if (all.empty()) continue;
@@ -204,9 +226,7 @@ WorkingCovariance working_covariance(const Measurements& measured,
           put_scatter(measured, values, scatter_by_simulation(measured, values, known.ratio, first, seeds),
                       scatter_ratio(measured, values, first, seeds).freedom, working.matrix));
     for (const auto& values : repeated.correlated) {
-      int repeats = std::numeric_limits<int>::max();
-      for (const Eigen::Index k : values)
-        repeats = std::min(repeats, *measured.values[static_cast<std::size_t>(k)].repeats);
+      const int repeats = fewest_repeats(measured, values);
       const double freedom =
           repeats + like_the_simulation(values.size(), repeats) - static_cast<double>(values.size());
       working.blocks.push_back(put_scatter(

@@ -49,8 +49,10 @@ struct Measurements {
 ///   of the block is that of its scatter over the mean square of scatter's share in its variances
 ///   (Welch-Satterthwaite).
 /// - Where such correlated values are less certain than their repeats say (by more than a fifth of the
-///   variance), their covariance is of errors that they share, too: it stays as stated and is known.
-/// - Other values, and those correlated with values of another experiment, stay as stated and are known.
+///   variance), or belong to several experiments, their covariance is of errors that they share, too. What
+///   part is scatter is not said: all of it counts as known from n tests, (n - 1) / (n - p) times as stated
+///   with n - p degrees of freedom, 1 at least.
+/// - Other values stay as stated and are known.
 struct WorkingCovariance {
   Eigen::MatrixXd matrix;
   std::vector<ScatterBlock> blocks;  ///< what is known first

@@ -174,12 +174,19 @@ TEST_F(Cli, ARunWhosePicturesGnuplotRefusesHasAReportAndFails) {
   std::ofstream(folder / "gnuplot") << "#!/bin/sh\necho 'no range' >&2\nexit 1\n";
   fs::permissions(folder / "gnuplot", fs::perms::owner_all);
   const fs::path out = folder / "run";
-  const Called run = called(
-      "PATH=" + folder.string() +
-      ":$PATH " SCREE_BINARY " run " SCREE_SOURCE_DIR "/scenarios/drop_test.yaml --out " + out.string());
+  const Called run =
+      called("PATH=" + folder.string() + ":$PATH " SCREE_BINARY " run " + small + " --out " + out.string());
   EXPECT_EQ(run.code, 1) << run.text;
   EXPECT_NE(run.text.find("the report lacks a picture: gnuplot failed on"), std::string::npos) << run.text;
   EXPECT_NE(slurp(out / "report.html").find("A picture is missing: gnuplot failed on"), std::string::npos);
+}
+
+// Of 60 t on a face of 10 m few grains lie on each other.
+TEST_F(Cli, ASlopeOfFewGrainsIsToldToBeTheFaces) {
+  const Called run = call("run " SCREE_SOURCE_DIR "/scenarios/quick_dump.yaml --summary-only --out " +
+                          (folder / "run").string());
+  EXPECT_EQ(run.code, 0) << run.text;
+  EXPECT_NE(run.text.find("times its D50 thick on the face of the bench"), std::string::npos) << run.text;
 }
 
 // Balls of 1 m on a bench of 0.5 m carry nearly all of the load above its crest.
