@@ -70,8 +70,7 @@ void print_plan(const scree::DiagnosisSession& session, const scree::ResultsStor
   }
   fmt::print(
       "{} simulations, {} of them in the store; then one to {} rounds of up to {} about what may be named, "
-      "and "
-      "last {} of each model that the answer shows if its fit has moved\n",
+      "and last {} of each model that the answer shows if its fit has moved\n",
       all.size(), all.size() - still_to_come.size(), session.most_rounds(), session.most_in_a_round(),
       session.of_a_model());
   for (const std::string& note : session.data().notes) fmt::print("note: {}\n", note);

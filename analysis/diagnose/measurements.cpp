@@ -141,26 +141,35 @@ ScatterBlock put_scatter(const Measurements& measured, const std::vector<Eigen::
   return {values, freedom * static_cast<double>(values.size()) / squares};
 }
 
-// Of values of which no correlation is stated.
-Eigen::MatrixXd scatter_by_simulation(const Measurements& measured, const std::vector<Eigen::Index>& values,
-                                      double ratio, Eigen::Index first, const Eigen::MatrixXd& seeds) {
+// Of the means of values: `of_one(i, j)` is the covariance of two in one test.
+template <class OfOne>
+Eigen::MatrixXd of_means(const Measurements& measured, const std::vector<Eigen::Index>& values,
+                         OfOne of_one) {
+  const auto repeats = [&](Eigen::Index k) {
+    return static_cast<double>(*measured.values[static_cast<std::size_t>(k)].repeats);
+  };
   const auto size = std::ssize(values);
-  Eigen::MatrixXd scatter(size, size);
+  Eigen::MatrixXd covariance(size, size);
   for (Eigen::Index a = 0; a < size; ++a)
     for (Eigen::Index b = 0; b < size; ++b) {
       const Eigen::Index i = values[static_cast<std::size_t>(a)], j = values[static_cast<std::size_t>(b)];
-      const MeasuredValue &one = measured.values[static_cast<std::size_t>(i)],
-                          &other = measured.values[static_cast<std::size_t>(j)];
-      const double of_seeds = seeds(i - first, j - first);
-      const double n = std::sqrt(static_cast<double>(*one.repeats) * *other.repeats);
-      scatter(a, b) = of_seeds * std::min(ratio, 1.0) / n;
-      if (a != b) continue;
-      const double nu = n - 1, s2 = *one.std * *one.std;
-      const double variance = (kPriorRepeats * ratio * of_seeds + nu * s2) / (kPriorRepeats + nu);
-      // A correlation above 1 cannot come of it: the diagonal is at least that of the correlated part.
-      scatter(a, a) = std::max(variance, 1.02 * of_seeds * std::min(ratio, 1.0)) / n;
+      covariance(a, b) = of_one(i, j) / std::sqrt(repeats(i) * repeats(j));
     }
-  return scatter;
+  return covariance;
+}
+
+// Of values of which no correlation is stated.
+Eigen::MatrixXd scatter_by_simulation(const Measurements& measured, const std::vector<Eigen::Index>& values,
+                                      double ratio, Eigen::Index first, const Eigen::MatrixXd& seeds) {
+  return of_means(measured, values, [&](Eigen::Index i, Eigen::Index j) {
+    const double of_seeds = seeds(i - first, j - first), correlated = of_seeds * std::min(ratio, 1.0);
+    if (i != j) return correlated;
+    const MeasuredValue& value = measured.values[static_cast<std::size_t>(i)];
+    const double nu = *value.repeats - 1, s2 = *value.std * *value.std;
+    const double variance = (kPriorRepeats * ratio * of_seeds + nu * s2) / (kPriorRepeats + nu);
+    // A correlation above 1 cannot come of it: the diagonal is at least that of the correlated part.
+    return std::max(variance, 1.02 * of_seeds * std::min(ratio, 1.0));
+  });
 }
 
 int fewest_repeats(const Measurements& measured, const std::vector<Eigen::Index>& values) {
@@ -180,21 +189,14 @@ double like_the_simulation(std::size_t values, int repeats) {
 Eigen::MatrixXd scatter_as_stated(const Measurements& measured, const std::vector<Eigen::Index>& values,
                                   double ratio, int repeats, double freedom, Eigen::Index first,
                                   const Eigen::MatrixXd& seeds) {
-  const auto size = std::ssize(values);
   const double like = like_the_simulation(values.size(), repeats);
-  Eigen::MatrixXd scatter(size, size);
-  for (Eigen::Index a = 0; a < size; ++a)
-    for (Eigen::Index b = 0; b < size; ++b) {
-      const Eigen::Index i = values[static_cast<std::size_t>(a)], j = values[static_cast<std::size_t>(b)];
-      const MeasuredValue &one = measured.values[static_cast<std::size_t>(i)],
-                          &other = measured.values[static_cast<std::size_t>(j)];
-      const double correlation =
-          measured.covariance(i, j) / std::sqrt(measured.covariance(i, i) * measured.covariance(j, j));
-      const double sample = correlation * *one.std * *other.std;
-      scatter(a, b) = (like * ratio * seeds(i - first, j - first) + (repeats - 1) * sample) / freedom /
-                      std::sqrt(static_cast<double>(*one.repeats) * *other.repeats);
-    }
-  return scatter;
+  return of_means(measured, values, [&](Eigen::Index i, Eigen::Index j) {
+    const auto std_of = [&](Eigen::Index k) { return *measured.values[static_cast<std::size_t>(k)].std; };
+    const double correlation =
+        measured.covariance(i, j) / std::sqrt(measured.covariance(i, i) * measured.covariance(j, j));
+    const double sample = correlation * std_of(i) * std_of(j);
+    return (like * ratio * seeds(i - first, j - first) + (repeats - 1) * sample) / freedom;
+  });
 }
 
 }  // namespace

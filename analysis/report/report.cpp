@@ -196,7 +196,7 @@ std::string facts(const RunResult& result) {
          lost_mass = 0;
   double shortest = std::numeric_limits<double>::max(), longest = 0;
   std::string seeds;
-  bool at_rest = true, interrupted = false, closed = true;
+  bool at_rest = true, closed = true;
   for (const SeedResult& seed : result.seeds) {
     closed = closed && (!seed.energy || seed.energy->closed);
     seeds += fmt::format("{}{}", seeds.empty() ? "" : ", ", seed.seed);
@@ -212,7 +212,6 @@ std::string facts(const RunResult& result) {
     shortest = std::min(shortest, seed.time_step_min);
     longest = std::max(longest, seed.time_step_max);
     at_rest = at_rest && seed.at_rest;
-    interrupted = interrupted || seed.interrupted;
   }
   const double n = static_cast<double>(std::max<std::size_t>(result.seeds.size(), 1));
   const char* each = n > 1 ? " for each seed, on average" : "";
@@ -249,9 +248,9 @@ std::string facts(const RunResult& result) {
                                   : std::string("nothing"));
   // A drop test ends at the top of the rebound.
   if (result.seeds.empty() || !result.seeds.front().rebound_height)
-    fact("at rest", interrupted ? "no: the run was interrupted"
-                    : at_rest   ? "yes: every dump came to rest"
-                                : "no: a dump was still moving at its time limit");
+    fact("at rest", unfinished(result) ? "no: the run was interrupted"
+                    : at_rest          ? "yes: every dump came to rest"
+                                       : "no: a dump was still moving at its time limit");
   return out + "</dl>\n";
 }
 
