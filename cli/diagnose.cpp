@@ -158,8 +158,7 @@ int run_diagnose(const DiagnoseOptions& options) {
   if (!prepare_folder(out, options.force)) return kBadInput;
   for (const std::string& line : scree::diagnosis_in_words(outcome)) fmt::print("{}\n", line);
   for (const std::string& note : outcome.notes) fmt::print("note: {}\n", note);
-  scree::write_diagnosis(origin, outcome, out);
+  const std::vector<std::string> missing = scree::write_diagnosis(origin, outcome, out);
   write_patches(session, loaded.model, outcome, out);
-  fmt::print("report: {}\n", (out / "report.html").string());
-  return kOk;
+  return tell_report(out, missing);
 }

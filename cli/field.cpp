@@ -110,7 +110,6 @@ int run_field(const FieldCliOptions& given) {
   if (!prepare_folder(options.out, options.force)) return kBadInput;
   for (const std::string& line : scree::field_in_words(field, printed)) fmt::print("{}\n", line);
   if (dataset) dataset->put_in_place();
-  scree::write_field_report(options.gradings.stem().string(), field, printed, options.out);
-  fmt::print("report: {}\n", (options.out / "report.html").string());
-  return kOk;
+  return tell_report(
+      options.out, scree::write_field_report(options.gradings.stem().string(), field, printed, options.out));
 }

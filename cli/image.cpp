@@ -319,8 +319,7 @@ int run_image(const ImageOptions& options) {
     }
   }
   report.version = fmt::format("scree {} ({})", SCREE_VERSION, SCREE_REVISION);
-  scree::write_image_report(report, out);
-  fmt::print("report: {}\n", (out / "report.html").string());
+  const int code = tell_report(out, scree::write_image_report(report, out));
   if (dataset) dataset->put_in_place();
-  return kOk;
+  return code;
 }

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "cli/ensemble/exit_code.h"
+
 namespace fs = std::filesystem;
 
 fs::path free_run_folder(const std::string& name) {
@@ -48,4 +50,10 @@ bool prepare_folder(const fs::path& folder, bool force) {
   fmt::print(stderr, "{}: cannot be written: {}; choose another --out\n", folder.string(),
              error ? error.message() : "no permission");
   return false;
+}
+
+int tell_report(const fs::path& folder, const std::vector<std::string>& missing) {
+  for (const std::string& why : missing) fmt::print(stderr, "the report lacks a picture: {}\n", why);
+  fmt::print("report: {}\n", (folder / "report.html").string());
+  return missing.empty() ? kOk : kFailed;
 }

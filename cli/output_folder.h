@@ -2,6 +2,7 @@
 // The folder a command writes into.
 #include <filesystem>
 #include <string>
+#include <vector>
 
 /// runs/NAME, or the first of runs/NAME-2, ... that is not there.
 std::filesystem::path free_run_folder(const std::string& name);
@@ -15,3 +16,7 @@ bool may_write(const std::filesystem::path& file);
 
 /// Makes the folder. False, with a message, if it holds something (unless forced) or cannot be written.
 bool prepare_folder(const std::filesystem::path& folder, bool force);
+
+/// Says which pictures the folder's report lacks, in gnuplot's words, and where it lies: kOk, or kFailed if
+/// it lacks one.
+int tell_report(const std::filesystem::path& folder, const std::vector<std::string>& missing);

@@ -105,7 +105,6 @@ int run_reproduce(const ReproduceOptions& options) {
   }
   const fs::path out = options.out.empty() ? free_run_folder("reproduction") : options.out;
   if (!prepare_folder(out, options.force)) return kBadInput;
-  scree::write_reproduction(cases, trends, out);
-  fmt::print("report: {}\n", (out / "report.html").string());
-  return progress.failed > 0 ? kFailed : kOk;
+  const int code = tell_report(out, scree::write_reproduction(cases, trends, out));
+  return progress.failed > 0 ? kFailed : code;
 }

@@ -228,17 +228,15 @@ EndedSeeds take_results(const Plan& plan, std::vector<SeedRun>& runs) {
   return ended;
 }
 
-/// False where the report lacks a picture, which it says.
-bool write_results(const Plan& plan, const scree::RunResult& result) {
+/// Gives why the report lacks pictures.
+std::vector<std::string> write_results(const Plan& plan, const scree::RunResult& result) {
   scree::write_summary(result, plan.out / "summary.json");
   scree::write_sections_csv(result, plan.out / "sections.csv");
   scree::write_conductivity_csv(result, plan.out / "ksat.csv");
-  if (plan.summary_only) return true;
+  if (plan.summary_only) return {};
   scree::SceneFacts scene;
   if (const scree::BenchSpec* bench = bench_of(plan.scenario)) scene.bench_slope = bench->slope_deg;
-  const std::vector<std::string> missing = scree::write_report(result, plan.out, scene);
-  for (const std::string& why : missing) fmt::print(stderr, "the report lacks a picture: {}\n", why);
-  return missing.empty();
+  return scree::write_report(result, plan.out, scene);
 }
 
 }  // namespace
@@ -268,9 +266,10 @@ int run_run(const RunOptions& options) {
   for (const std::string& failure : result.failures) fmt::print(stderr, "{}\n", failure);
   const int code = result.failures.empty() ? ended.code : static_cast<int>(kWatchFailed);
   result.failures.insert(result.failures.begin(), ended.failures.begin(), ended.failures.end());
-  const bool complete = write_results(plan, result);
+  const std::vector<std::string> missing = write_results(plan, result);
   scree::print_result(result);
-  fmt::print("\n{}: {}\n", plan.summary_only ? "summary" : "report",
-             (plan.out / (plan.summary_only ? "summary.json" : "report.html")).string());
-  return end(complete ? code : std::max<int>(code, kFailed));
+  fmt::print("\n");
+  if (!plan.summary_only) return end(std::max(code, tell_report(plan.out, missing)));
+  fmt::print("summary: {}\n", (plan.out / "summary.json").string());
+  return end(code);
 }

@@ -58,7 +58,7 @@ int run_study(const StudyOptions& options) {
   }
   const fs::path out = options.out.empty() ? free_run_folder(study.sweep.name) : options.out;
   if (!prepare_folder(out, options.force)) return kBadInput;
-  scree::write_study(study.sweep.name, study.currency, ranked, *criterion, loaded.warnings, out);
-  fmt::print("report: {}\n", (out / "report.html").string());
-  return progress.failed > 0 ? kFailed : kOk;
+  const int code = tell_report(
+      out, scree::write_study(study.sweep.name, study.currency, ranked, *criterion, loaded.warnings, out));
+  return progress.failed > 0 ? kFailed : code;
 }

@@ -93,9 +93,10 @@ std::vector<TrendComparison> compare_trends(const std::vector<CaseResult>& cases
 std::vector<std::string> reproduction_in_words(const std::vector<CaseResult>& cases,
                                                const std::vector<TrendComparison>& trends);
 
-/// Writes folder/report.html with its figures, and these in folder/pictures. Throws std::runtime_error when
-/// gnuplot is missing or fails or a file cannot be written.
-void write_reproduction(const std::vector<CaseResult>& cases, const std::vector<TrendComparison>& trends,
-                        const std::filesystem::path& folder);
+/// Writes folder/report.html with its figures, and these in folder/pictures. Gives gnuplot's words on those
+/// that it refused. Throws std::runtime_error when gnuplot is missing or a file cannot be written.
+std::vector<std::string> write_reproduction(const std::vector<CaseResult>& cases,
+                                            const std::vector<TrendComparison>& trends,
+                                            const std::filesystem::path& folder);
 
 }  // namespace scree

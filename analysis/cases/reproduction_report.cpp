@@ -148,12 +148,14 @@ std::vector<Picture> draw_figures(const std::vector<CaseResult>& cases, const st
     }
     if (chart.series.empty()) continue;
     const auto file = folder / fmt::format("{}.svg", spec.file);
-    draw(chart, file);
-    pictures.push_back(
-        {fmt::format("{}: {} (figure {} of the thesis)", spec.title, spec.label, spec.figure), file,
-         "Dots with a line: mean and standard deviation of the seeds simulated here. Squares: PFC3D; "
-         "triangles: measured; both where the thesis prints numbers." +
-             std::string(spec.dumps > 0 ? fmt::format(" Simulated after load {}.", spec.dumps) : "")});
+    add_picture(pictures, [&] {
+      draw(chart, file);
+      return Picture{
+          fmt::format("{}: {} (figure {} of the thesis)", spec.title, spec.label, spec.figure), file,
+          "Dots with a line: mean and standard deviation of the seeds simulated here. Squares: PFC3D; "
+          "triangles: measured; both where the thesis prints numbers." +
+              std::string(spec.dumps > 0 ? fmt::format(" Simulated after load {}.", spec.dumps) : "")};
+    });
   }
   return pictures;
 }
@@ -283,8 +285,9 @@ std::string trends_table(const std::vector<TrendComparison>& trends) {
 
 }  // namespace
 
-void write_reproduction(const std::vector<CaseResult>& cases, const std::vector<TrendComparison>& trends,
-                        const std::filesystem::path& folder) {
+std::vector<std::string> write_reproduction(const std::vector<CaseResult>& cases,
+                                            const std::vector<TrendComparison>& trends,
+                                            const std::filesystem::path& folder) {
   const std::filesystem::path pictures = folder / "pictures";
   std::filesystem::create_directories(pictures);
   const std::vector<std::string> words = reproduction_in_words(cases, trends);
@@ -303,7 +306,8 @@ void write_reproduction(const std::vector<CaseResult>& cases, const std::vector<
                      list("<h3>Signs, trends, runs</h3>",
                           [&](const std::string& line) { return !counts(line) && !against(line); }) +
                      limits(cases) + signs_table(cases) + velocity_table(cases) + trends_table(trends);
-  body += figures("Figures", draw_figures(cases, pictures));
+  PageFigures shown;
+  body += shown.figures("Figures", draw_figures(cases, pictures));
   body += "<h2>Every printed value</h2>\n";
   double seconds = 0;
   std::size_t runs = 0;
@@ -320,6 +324,7 @@ void write_reproduction(const std::vector<CaseResult>& cases, const std::vector<
       folder / "report.html",
       html_page("The thesis's cases, simulated again",
                 fmt::format("{} runs, {} of computing on one core", runs, duration_text(seconds)), body));
+  return shown.missing();
 }
 
 }  // namespace scree

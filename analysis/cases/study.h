@@ -47,10 +47,11 @@ std::vector<StudyRank> rank_options(const std::vector<StudyOption>& options, con
 std::vector<std::string> study_in_words(const std::vector<StudyOption>& options,
                                         const StudyCriterion& criterion);
 
-/// Writes folder/report.html; `warnings`: of the study. Throws std::runtime_error when gnuplot is missing or
-/// fails or a file cannot be written.
-void write_study(const std::string& title, const std::string& currency,
-                 const std::vector<StudyOption>& options, const StudyCriterion& criterion,
-                 const std::vector<std::string>& warnings, const std::filesystem::path& folder);
+/// Writes folder/report.html; `warnings`: of the study. Gives gnuplot's words on the pictures that it
+/// refused. Throws std::runtime_error when gnuplot is missing or a file cannot be written.
+std::vector<std::string> write_study(const std::string& title, const std::string& currency,
+                                     const std::vector<StudyOption>& options, const StudyCriterion& criterion,
+                                     const std::vector<std::string>& warnings,
+                                     const std::filesystem::path& folder);
 
 }  // namespace scree

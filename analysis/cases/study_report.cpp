@@ -82,11 +82,13 @@ Picture draw_profiles(const std::vector<StudyOption>& options, const std::filesy
 
 }  // namespace
 
-void write_study(const std::string& title, const std::string& currency,
-                 const std::vector<StudyOption>& options, const StudyCriterion& criterion,
-                 const std::vector<std::string>& warnings, const std::filesystem::path& folder) {
+std::vector<std::string> write_study(const std::string& title, const std::string& currency,
+                                     const std::vector<StudyOption>& options, const StudyCriterion& criterion,
+                                     const std::vector<std::string>& warnings,
+                                     const std::filesystem::path& folder) {
   const std::filesystem::path pictures = folder / "pictures";
   std::filesystem::create_directories(pictures);
+  PageFigures shown;
   std::string body =
       "<h2>Ranking</h2>\n<p>Options of one rank are a tie: their difference to the best of it is "
       "within the scatter of seeds (Welch's t test, p of 0.05 and more).</p>\n<ul>\n";
@@ -97,9 +99,10 @@ void write_study(const std::string& title, const std::string& currency,
   body += "</ul>\n" + ranking(options, criterion, currency) + other_criteria(options, criterion);
   if (std::any_of(options.begin(), options.end(),
                   [](const StudyOption& each) { return !each.runs.seeds.empty(); }))
-    body += "<h2>Chart</h2>\n" + figure(draw_profiles(options, pictures));
+    body += "<h2>Chart</h2>\n" + shown.figure([&] { return draw_profiles(options, pictures); });
   write_text_file(folder / "report.html",
                   html_page(title, fmt::format("ranked by {}", criterion.words), body));
+  return shown.missing();
 }
 
 }  // namespace scree

@@ -51,8 +51,9 @@ std::vector<std::string> diagnosis_in_words(const DiagnosisOutcome& outcome);
 /// Values of a model's parameters: key of the scenario and value, base parameters first.
 std::vector<std::pair<std::string, double>> values_at(const ModelSpace& space, const ModelPoint& point);
 
-/// Writes report.html and diagnosis.json into a folder that is there. Throws std::runtime_error.
-void write_diagnosis(const DiagnosisOrigin& origin, const DiagnosisOutcome& outcome,
-                     const std::filesystem::path& folder);
+/// Writes report.html and diagnosis.json into a folder that is there. Gives gnuplot's words on the pictures
+/// that it refused. Throws std::runtime_error when gnuplot is missing or a file cannot be written.
+std::vector<std::string> write_diagnosis(const DiagnosisOrigin& origin, const DiagnosisOutcome& outcome,
+                                         const std::filesystem::path& folder);
 
 }  // namespace scree

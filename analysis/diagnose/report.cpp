@@ -502,17 +502,20 @@ std::vector<std::pair<std::string, double>> values_at(const ModelSpace& space, c
   return values;
 }
 
-void write_diagnosis(const DiagnosisOrigin& origin, const DiagnosisOutcome& o, const fs::path& folder) {
+std::vector<std::string> write_diagnosis(const DiagnosisOrigin& origin, const DiagnosisOutcome& o,
+                                         const fs::path& folder) {
   write_text_file(folder / "diagnosis.json", json_of(origin, o).dump(2) + "\n");
   const fs::path pictures = folder / "pictures";
   fs::create_directories(pictures);
+  PageFigures shown;
   const std::vector<std::string> words = diagnosis_in_words(o);
   std::string body;
   for (std::size_t k = 0; k < words.size(); ++k)
     body += k == 0 ? fmt::format("<p><strong>{}</strong></p>\n", html_escaped(words[k]))
                    : fmt::format("<p>{}</p>\n", html_escaped(words[k]));
-  body += figure(draw_residuals(o, pictures)) + gaps_table(o) + parameters_table(o) + candidates_table(o) +
-          where_tables(o.diagnosis) + alike_table(o) + held_out_table(o) + numbers_table(o);
+  body += shown.figure([&] { return draw_residuals(o, pictures); }) + gaps_table(o) + parameters_table(o) +
+          candidates_table(o) + where_tables(o.diagnosis) + alike_table(o) + held_out_table(o) +
+          numbers_table(o);
   if (!o.notes.empty()) {
     body += "<h2>Notes</h2>\n<ul>\n";
     for (const std::string& note : o.notes) body += fmt::format("<li>{}</li>\n", html_escaped(note));
@@ -528,6 +531,7 @@ void write_diagnosis(const DiagnosisOrigin& origin, const DiagnosisOutcome& o, c
                 fmt::format("{}. Measured numbers: {}, effects looked for: {}, simulations: {}", measurements,
                             o.diagnosis.measured.values.size(), o.space.effects.size(), o.simulations),
                 body));
+  return shown.missing();
 }
 
 }  // namespace scree

@@ -324,15 +324,15 @@ Picture draw_correction(const FieldAnalysis& field, const fs::path& folder) {
 }  // namespace
 
 std::vector<Picture> draw_field(const FieldAnalysis& field, const fs::path& folder) {
-  std::vector<Picture> pictures{draw_envelopes(field, folder)};
-  const auto add = [&](std::optional<Picture> picture) {
-    if (picture) pictures.push_back(std::move(*picture));
-  };
-  for (const char* quantity : kHistogramQuantities) add(draw_histogram(field, quantity, folder));
-  add(draw_chi(field, folder));
-  add(draw_chi_fit(field, folder));
-  if (field.whole.curve(CurveKind::medians, true) != nullptr) add(draw_correction(field, folder));
-  add(draw_ksat(field, folder));
+  std::vector<Picture> pictures;
+  add_picture(pictures, [&] { return draw_envelopes(field, folder); });
+  for (const char* quantity : kHistogramQuantities)
+    add_picture(pictures, [&] { return draw_histogram(field, quantity, folder); });
+  add_picture(pictures, [&] { return draw_chi(field, folder); });
+  add_picture(pictures, [&] { return draw_chi_fit(field, folder); });
+  if (field.whole.curve(CurveKind::medians, true) != nullptr)
+    add_picture(pictures, [&] { return draw_correction(field, folder); });
+  add_picture(pictures, [&] { return draw_ksat(field, folder); });
   return pictures;
 }
 

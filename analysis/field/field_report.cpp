@@ -241,18 +241,21 @@ std::vector<std::string> field_in_words(const FieldAnalysis& field, const std::v
   return lines;
 }
 
-void write_field_report(const std::string& title, const FieldAnalysis& field,
-                        const std::vector<HeldValue>& printed, const std::filesystem::path& folder) {
+std::vector<std::string> write_field_report(const std::string& title, const FieldAnalysis& field,
+                                            const std::vector<HeldValue>& printed,
+                                            const std::filesystem::path& folder) {
   const std::filesystem::path pictures = folder / "pictures";
   std::filesystem::create_directories(pictures);
   write_field_tables(field, printed, folder);
+  PageFigures shown;
   std::string body = "<ul>\n";
   for (const std::string& line : field_in_words(field, printed))
     body += fmt::format("<li>{}</li>\n", html_escaped(line));
-  body += "</ul>\n" + section_table(field) + figures("Pictures", draw_field(field, pictures)) +
+  body += "</ul>\n" + section_table(field) + shown.figures("Pictures", draw_field(field, pictures)) +
           normality_table(field) + fit_table(field) + ksat_table(field) + printed_table(printed) +
           given_table(field);
   write_text_file(folder / "report.html", html_page(title, "gradings of sections, picture by picture", body));
+  return shown.missing();
 }
 
 }  // namespace scree

@@ -15,9 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Picture passing_chart(const AnalysedPhoto& photo, std::size_t number, const fs::path& folder) {
+// None of grains of one size.
+std::optional<Picture> passing_chart(const AnalysedPhoto& photo, std::size_t number, const fs::path& folder) {
   const std::vector<ImageGrading>& gradings = photo.gradings;
   const double low = gradings[0].curve->diameter(0), high = gradings[0].curve->diameter(1);
+  if (!(high > low)) return std::nullopt;
   std::string blocks, plots;
   for (std::size_t k = gradings.size(); k-- > 0;) {  // the whole region last, on top
     if (!gradings[k].curve) continue;
@@ -40,8 +42,8 @@ Picture passing_chart(const AnalysedPhoto& photo, std::size_t number, const fs::
           fmt::format("set xrange [{:.6g}:{:.6g}]\nset xtics ({})\n", low, high, log_ticks(low, high)) +
           blocks + "plot " + plots + "\n",
       file);
-  return {"Passing curves", file,
-          "Mass of the outlines counted, finer than a diameter; dashed the whole region."};
+  return Picture{"Passing curves", file,
+                 "Mass of the outlines counted, finer than a diameter; dashed the whole region."};
 }
 
 Picture chi_chart(const ImageReport& report, const fs::path& folder) {
@@ -159,8 +161,9 @@ std::string bias_words(const ImageBias& bias) {
 
 }  // namespace
 
-void write_image_report(const ImageReport& report, const fs::path& folder) {
+std::vector<std::string> write_image_report(const ImageReport& report, const fs::path& folder) {
   std::string body;
+  PageFigures shown;
   for (std::size_t i = 0; i < report.photos.size(); ++i) {
     const AnalysedPhoto& photo = report.photos[i];
     const PhotoAnalysis& found = photo.found;
@@ -178,22 +181,25 @@ void write_image_report(const ImageReport& report, const fs::path& folder) {
       for (const std::string& note : found.notes) body += "<li>" + html_escaped(note) + "</li>";
       body += "</ul></div>\n";
     }
-    body += figure(
-        {"What was counted", report.overlays[i], "Outlines of grains, borders of sections, scale targets."});
-    body += gradings_table(photo.gradings) + figure(passing_chart(photo, i + 1, folder));
+    body += shown.figure(Picture{"What was counted", report.overlays[i],
+                                 "Outlines of grains, borders of sections, scale targets."});
+    body +=
+        gradings_table(photo.gradings) + shown.figure([&] { return passing_chart(photo, i + 1, folder); });
     if (i < report.checks.size())
       body += "<h3>Against what is known</h3>\n" +
               check_table(report.checks[i], html_escaped(bodies_in_words(report.settings)));
   }
-  body += "<h2>Along the slope</h2>\n" + figure(chi_chart(report, folder));
+  body += "<h2>Along the slope</h2>\n" + shown.figure([&] { return chi_chart(report, folder); });
   if (report.bias)
-    body += "<h2>Bias against size</h2>\n" + bias_words(*report.bias) +
-            (report.bias->classes.empty() ? "" : figure(bias_chart(*report.bias, folder)));
+    body +=
+        "<h2>Bias against size</h2>\n" + bias_words(*report.bias) +
+        (report.bias->classes.empty() ? "" : shown.figure([&] { return bias_chart(*report.bias, folder); }));
   write_text_file(folder / "report.html",
                   html_page("Gradings from photographs",
                             fmt::format("{} · sizes by the model {}, c/b = {:g}", report.version,
                                         name_of(report.settings.model), report.settings.shape_factor),
                             body));
+  return shown.missing();
 }
 
 }  // namespace scree

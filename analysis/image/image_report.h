@@ -17,8 +17,9 @@ struct ImageReport {
   std::string version;
 };
 
-/// Writes report.html into the folder and the charts it shows, passing-N.svg, chi.svg and bias.svg. Throws
-/// std::runtime_error, see run_gnuplot.
-void write_image_report(const ImageReport& report, const std::filesystem::path& folder);
+/// Writes report.html into the folder and the charts it shows, passing-N.svg, chi.svg and bias.svg. Gives
+/// gnuplot's words on those that it refused. Throws std::runtime_error when gnuplot is missing or a file
+/// cannot be written.
+std::vector<std::string> write_image_report(const ImageReport& report, const std::filesystem::path& folder);
 
 }  // namespace scree

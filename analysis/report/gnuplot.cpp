@@ -81,9 +81,9 @@ void run_gnuplot(const std::string& script, const std::filesystem::path& output)
       fmt::format("gnuplot failed on {} (exit status {}): {}", output.string(), status, words));
 }
 
-void add_picture(std::vector<Picture>& pictures, const std::function<Picture()>& draw) {
+void add_picture(std::vector<Picture>& pictures, const std::function<std::optional<Picture>()>& draw) {
   try {
-    pictures.push_back(draw());
+    if (std::optional<Picture> drawn = draw()) pictures.push_back(std::move(*drawn));
   } catch (const GnuplotFailed& failed) {
     pictures.push_back({"", "", "", failed.what()});
   }

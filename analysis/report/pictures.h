@@ -47,8 +47,9 @@ class GnuplotFailed : public std::runtime_error {
 /// package to install when gnuplot is missing, GnuplotFailed with gnuplot's own words when it fails.
 void run_gnuplot(const std::string& script, const std::filesystem::path& output);
 
-/// Adds what `draw` gives, or why gnuplot refused it: one picture must not cost a long run its report.
-void add_picture(std::vector<Picture>& pictures, const std::function<Picture()>& draw);
+/// Adds what `draw` gives, if it gives anything, or why gnuplot refused it: one picture must not cost a long
+/// run its report.
+void add_picture(std::vector<Picture>& pictures, const std::function<std::optional<Picture>()>& draw);
 
 /// Terminal, axes and grid of every chart (SVG), size in pixels.
 std::string chart_terminal(int width, int height);

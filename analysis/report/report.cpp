@@ -273,18 +273,14 @@ std::vector<std::string> write_report(const RunResult& result, const std::filesy
                                       const SceneFacts& scene) {
   const std::filesystem::path pictures = folder / "pictures";
   std::filesystem::create_directories(pictures);
-  std::vector<std::string> missing;
-  const auto shown = [&](const char* heading, const std::vector<Picture>& drawn) {
-    for (const Picture& picture : drawn)
-      if (!picture.why_missing.empty()) missing.push_back(picture.why_missing);
-    return figures(heading, drawn);
-  };
+  PageFigures shown;
   std::string page = failures_box(result) + lead_paragraphs(result) + notes_box(result);
-  page += shown("The pile", draw_pile(result, scene, pictures));
+  page += shown.figures("The pile", draw_pile(result, scene, pictures));
   if (!result.comparison.empty())
     page += "<h2>Held against printed values</h2>\n" + comparison_table(result.comparison);
-  page += shown("Charts", draw_charts(result, scene, pictures));
-  page += shown("Inside the pile, and the flow", draw_inside_of(result, pictures)) + inside_table(result);
+  page += shown.figures("Charts", draw_charts(result, scene, pictures));
+  page +=
+      shown.figures("Inside the pile, and the flow", draw_inside_of(result, pictures)) + inside_table(result);
   page += section_tables(result) + lateral_table(result);
   if (std::any_of(result.seeds.begin(), result.seeds.end(),
                   [](const SeedResult& seed) { return seed.heap.has_value(); }))
@@ -294,7 +290,7 @@ std::vector<std::string> write_report(const RunResult& result, const std::filesy
       fmt::format("Simulated with scree {}, scenario {}", result.version, result.scenario);
   write_text_file(folder / "report.html",
                   html_page(result.title.empty() ? result.scenario : result.title, under, page));
-  return missing;
+  return shown.missing();
 }
 
 }  // namespace scree

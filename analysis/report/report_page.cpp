@@ -150,10 +150,12 @@ std::string comparison_table(const std::vector<Comparison>& comparison) {
   return out + "</tbody></table></div>\n";
 }
 
-std::string figure(const Picture& picture) {
-  if (!picture.why_missing.empty())
+std::string PageFigures::figure(const Picture& picture) {
+  if (!picture.why_missing.empty()) {
+    missing_.push_back(picture.why_missing);
     return fmt::format("<p class=\"notes\" role=\"alert\">A picture is missing: {}</p>\n",
                        html_escaped(picture.why_missing));
+  }
   std::ifstream in(picture.file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   if (!in || bytes.empty())
@@ -167,7 +169,13 @@ std::string figure(const Picture& picture) {
       base64(bytes), html_escaped(picture.title), html_escaped(picture.caption));
 }
 
-std::string figures(const char* heading, const std::vector<Picture>& pictures) {
+std::string PageFigures::figure(const std::function<std::optional<Picture>()>& draw) {
+  std::vector<Picture> pictures;
+  add_picture(pictures, draw);
+  return pictures.empty() ? "" : figure(pictures.front());
+}
+
+std::string PageFigures::figures(const char* heading, const std::vector<Picture>& pictures) {
   if (pictures.empty()) return "";
   std::string out = fmt::format("<h2>{}</h2>\n", heading);
   for (const Picture& picture : pictures) out += figure(picture);

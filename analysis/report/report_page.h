@@ -1,5 +1,6 @@
 #pragma once
 // What HTML reports are made of.
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,9 +24,21 @@ std::string value_cell(std::string_view quantity, const MeanStd& value, const st
 /// Printed values beside ours with z, coloured by agreement; empty without any.
 std::string comparison_table(const std::vector<Comparison>& comparison);
 
-/// A picture with its caption, its bytes within the page, or why it is missing; several under a heading,
-/// nothing without any. Throw std::runtime_error if a file cannot be read or is empty.
-std::string figure(const Picture& picture);
-std::string figures(const char* heading, const std::vector<Picture>& pictures);
+/// The figures of one page: each picture with its caption, its bytes within the page, or why it is missing.
+/// Throw std::runtime_error if a file cannot be read or is empty.
+class PageFigures {
+ public:
+  std::string figure(const Picture& picture);
+  /// What `draw` gives, see add_picture().
+  std::string figure(const std::function<std::optional<Picture>()>& draw);
+  /// Several under a heading, nothing without any.
+  std::string figures(const char* heading, const std::vector<Picture>& pictures);
+
+  /// gnuplot's words for each that it refused; empty: the page lacks nothing.
+  const std::vector<std::string>& missing() const { return missing_; }
+
+ private:
+  std::vector<std::string> missing_;
+};
 
 }  // namespace scree

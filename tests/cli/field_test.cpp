@@ -47,6 +47,19 @@ class Field : public testing::Test {
   const std::string source = SCREE_SOURCE_DIR;
 };
 
+// The report of every command goes through the same PageFigures and tell_report.
+TEST_F(Field, PicturesThatGnuplotRefusesCostNoReport) {
+  std::ofstream(folder / "gnuplot") << "#!/bin/sh\necho 'no range' >&2\nexit 1\n";
+  fs::permissions(folder / "gnuplot", fs::perms::owner_all);
+  const fs::path out = folder / "out";
+  const Called run = called("PATH=" + folder.string() + ":$PATH " SCREE_BINARY " field " + table() +
+                            " --out " + out.string());
+  EXPECT_EQ(run.code, 1) << run.text;
+  EXPECT_THAT(run.text,
+              AllOf(HasSubstr("the report lacks a picture: gnuplot failed on"), HasSubstr("report: ")));
+  EXPECT_THAT(slurp(out / "report.html"), HasSubstr("A picture is missing: gnuplot failed on"));
+}
+
 TEST_F(Field, ReportTablesAndDataset) {
   const std::string out = (folder / "out").string();
   const Called called =
