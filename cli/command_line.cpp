@@ -176,7 +176,9 @@ Command study_command(CLI::App& all) {
   StudyOptions& study = *options;
   CLI::App* app = all.add_subcommand("study", "Hold disposal options against each other and rank them");
   app->add_option("file", study.file, "Study file (YAML)")->required();
-  app->add_option("--rank-by", study.rank_by, "Criterion; default: that of the file");
+  app->add_option("--rank-by", study.rank_by,
+                  "chi_range, d50_ratio, ksat_ratio, lateral_chi_std, inside_ksat_contrast or "
+                  "largest_at_toe; default: that of the file");
   add_ensemble_options(app, study.ensemble);
   app->add_option("--out", study.out, "Folder for the report; default: a free runs/NAME");
   runs_nothing(app, app->add_flag("--list", study.list, "Report what the store has; run nothing"));
@@ -202,9 +204,10 @@ Command compare_command(CLI::App& all) {
 Command validate_command(CLI::App& all) {
   const auto file = std::make_shared<std::filesystem::path>();
   const auto overrides = std::make_shared<std::vector<std::string>>();
-  CLI::App* app =
-      all.add_subcommand("validate", "Check a scenario, a dataset, or any other file that a command takes");
-  app->add_option("file", *file, "Scenario, dataset, sweep, calibration, study or model file (YAML)")
+  CLI::App* app = all.add_subcommand(
+      "validate", "Check a scenario, dataset, sweep, calibration, study or model file, or a grading");
+  app->add_option("file", *file,
+                  "Scenario, dataset, sweep, calibration, study or model file (YAML), or grading (CSV)")
       ->required();
   app->add_option("--set", *overrides, "Change a value before checking")->take_all()->allow_extra_args(false);
   app->footer(

@@ -24,7 +24,6 @@ constexpr double kOverlapWarning =
     0.10;                         // of the smaller radius; physics of soft spheres beyond it is doubtful
 constexpr double kHalfWidth = 4;  // of the section through a pile, m: half a truck bed or blade
 constexpr double kCellsInHeight = 0.1;  // of the bench, size of the section's cells
-constexpr double kThinCover = 5;        // of its D50: rock in a thinner layer lies as its bed lies
 constexpr double kUsualPorosity = 0.4;  // of a pile too thin to have an inside
 
 std::vector<double> dump_points(const Scenario& scenario) {
@@ -178,7 +177,7 @@ SeedResult analyse(const Scenario& scenario, std::uint64_t seed, RunOutcome outc
     }
   } else if (outcome.rebound_height) {
     r.rebound_height = outcome.rebound_height;
-  } else if (!r.final_state.grains.empty()) {
+  } else if (!std::holds_alternative<DropTest>(scenario.experiment) && !r.final_state.grains.empty()) {
     r.repose = measure_repose(r.final_state.grains);
     r.heap = measure_heap_shape(r.final_state.grains, r.original, *r.repose, measured);
   }
@@ -223,7 +222,7 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
     if (!s.sections.empty()) left_out += s.sections.front().mass_outside;
     if (const std::string why = why_no_slope_angle(scenario, s); !why.empty())
       result.notes.push_back(fmt::format("seed {}: {}", s.seed, why));
-    if (bench_of(scenario) && s.slope_angle && s.slope_cover < kThinCover)
+    if (bench_of(scenario) && s.slope_angle && lies_thin(s))
       result.notes.push_back(fmt::format(
           "seed {}: the rock lies {} times its D50 thick on the face of the bench: its slope is the face's "
           "more than its own",

@@ -9,6 +9,8 @@
 #include "cli/ensemble/model_file.h"
 #include "cli/ensemble/study_file.h"
 #include "cli/option_values.h"
+#include "sim/material/grading.h"
+#include "sim/material/input_bytes.h"
 #include "sim/scene/estimate.h"
 #include "sim/scene/scenario.h"
 
@@ -89,14 +91,31 @@ int validate_model(const std::filesystem::path& file) {
   return kOk;
 }
 
+int validate_grading(const std::filesystem::path& file) {
+  try {
+    const scree::Grading grading = scree::read_grading(file);
+    fmt::print("{}: ok: grading from {:g} to {:g} m, D10 {:.3g}, D50 {:.3g}, D90 {:.3g} m\n", file.string(),
+               grading.min_diameter(), grading.max_diameter(), grading.diameter(0.1), grading.diameter(0.5),
+               grading.diameter(0.9));
+    return kOk;
+  } catch (const scree::FileError& error) {
+    fmt::print(stderr, "{}; a table is taken for a grading here, one of a dataset is checked with its dataset\n",
+               error.what());
+    return kBadInput;
+  }
+}
+
 }  // namespace
 
 int run_validate(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   const scree::FileKind kind = scree::kind_of(file);
-  if (kind != scree::FileKind::scenario && kind != scree::FileKind::unknown && !overrides.empty()) {
-    fmt::print(stderr, "--set: changes a scenario; this file says itself what differs from its scenarios\n");
+  const bool table = file.extension() == ".csv";
+  if ((table || (kind != scree::FileKind::scenario && kind != scree::FileKind::unknown)) &&
+      !overrides.empty()) {
+    fmt::print(stderr, "--set: changes a scenario, and {} is none\n", file.string());
     return kBadInput;
   }
+  if (table) return validate_grading(file);
   switch (kind) {
     case scree::FileKind::dataset:
       return validate_dataset(file);

@@ -75,10 +75,14 @@ std::string angle_sentences(const RunResult& result) {
                        html_escaped(why_no_repose_angle(
                            *std::find_if(result.seeds.begin(), result.seeds.end(),
                                          [](const SeedResult& seed) { return seed.repose.has_value(); }))));
+  const bool thin = std::any_of(result.seeds.begin(), result.seeds.end(), lies_thin);
   if (mean_std(slope).n > 0)
-    out += fmt::format("{} {}°. ",
-                       at_rest ? "The slope came to rest at" : "The slope is not at rest yet; it stands at",
-                       with_std(mean_std(slope), 1));
+    out +=
+        fmt::format("{} {}°. ",
+                    !at_rest ? "The slope is not at rest yet; it stands at"
+                    : thin   ? "No slope of the rock's own: it lies thin on the bench face, with a surface of"
+                             : "The slope came to rest at",
+                    with_std(mean_std(slope), 1));
   return out;
 }
 

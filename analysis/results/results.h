@@ -58,6 +58,9 @@ struct SeedResult {
   double slope_cover = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// Rock on the face in so thin a layer (of five D50) lies as its bed lies: the slope's angle is the face's.
+inline bool lies_thin(const SeedResult& seed) { return seed.slope_cover < 5; }
+
 /// A printed value of the thesis.
 struct ReferenceValue {
   std::string case_name;  ///< A1, cm_field_3sec, lab_repose ...

@@ -9,8 +9,9 @@ Effect breakage() {
       .doc = "Blocks that fall far or hit each other hard break, large ones sooner than small ones.",
       .equation =
           "A grain breaks when the energy that one of its contacts stores in it passes m (d / D50)^-exponent "
-          "/ fragility: kn u^2 / 2 on a plane, half of that in a contact of two spheres. So a grain breaks "
-          "on a floor from v^2 / 2 > (d / D50)^-exponent / fragility on. In its place stand four equal "
+          "/ fragility: kn u^2 / 2 on a plane, half of that in a contact of two spheres. So a grain that "
+          "hits a floor at v breaks from v^2 / 2 > (1 + alpha) (d / D50)^-exponent / fragility on, alpha the "
+          "local damping (0.4), which takes its share on the way in. In its place stand four equal "
           "fragments, a quarter of its mass each, at the corners of a tetrahedron inside it, with its "
           "velocity and spin; they grow by 1 % at a time, with 10 stable steps of the smallest grain "
           "between, until their volumes add up to that of the grain. Fragments do not break while they "

@@ -28,7 +28,7 @@ RunOutcome run_drop_test(const Scenario& scenario, const DropTest& e, std::uint6
   bool bounced = false;
   double highest = 0;
   while (true) {
-    if (world.time() > kMostTime * fall) throw std::runtime_error("the rock has not come to its rebound");
+    if (world.time() > kMostTime * fall) throw std::invalid_argument("the rock has not come to its rebound");
     if (!stage.advance(kLook, bounced ? "rebounding" : "falling", bounced ? 0.7 : 0.0, bounced ? 1.0 : 0.7))
       return stage.finish();
     Grain rock;
@@ -38,11 +38,11 @@ RunOutcome run_drop_test(const Scenario& scenario, const DropTest& e, std::uint6
       return static_cast<double>(now.grains.size());
     });
     if (grains == 0)
-      throw std::runtime_error(
+      throw std::invalid_argument(
           "the rock went through the floor: raise material.effective_modulus_pa or lower "
           "experiment.height_m");
     if (grains > 1)
-      throw std::runtime_error(
+      throw std::invalid_argument(
           "the rock broke and has no rebound: lower effects.breakage.fragility_kg_per_j");
     const double height = stage.observe([&] { return rock.position.z() - radius; });
     const bool rises = stage.observe([&] { return rock.velocity.z(); }) > 0;

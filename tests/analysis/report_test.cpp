@@ -258,9 +258,11 @@ TEST(Report, OneRefusedPictureDoesNotCostThePage) {
 
 TEST(Report, APictureThatCannotBeReadIsRefused) {
   const auto folder = fresh_folder("unreadable");
-  EXPECT_THROW(figure({"None", folder / "none.svg", "It is not there."}), std::runtime_error);
+  EXPECT_THROW(PageFigures().figure(Picture{"None", folder / "none.svg", "It is not there."}),
+               std::runtime_error);
   std::ofstream(folder / "empty.svg").flush();
-  EXPECT_THROW(figure({"Empty", folder / "empty.svg", "It holds nothing."}), std::runtime_error);
+  EXPECT_THROW(PageFigures().figure(Picture{"Empty", folder / "empty.svg", "It holds nothing."}),
+               std::runtime_error);
 }
 
 TEST(ReportText, LeadSaysWhyThereIsNoReposeAngle) {
@@ -277,6 +279,15 @@ TEST(ReportText, LeadSaysWhyThereIsNoReposeAngle) {
   run.seeds[1].repose->angle = 31.25;
   EXPECT_THAT(lead_paragraphs(run), HasSubstr("The heap is not at rest yet; its flank stands at 31.2°"));
   EXPECT_EQ(why_no_repose_angle(run.seeds[1]), "");
+}
+
+TEST(ReportText, LeadTakesNoFaceForASlopeOfTheRock) {
+  RunResult run;
+  run.seeds.resize(2);
+  for (SeedResult& seed : run.seeds) seed.slope_angle = 42.4, seed.at_rest = true, seed.slope_cover = 12;
+  EXPECT_THAT(lead_paragraphs(run), HasSubstr("The slope came to rest at 42.4"));
+  for (SeedResult& seed : run.seeds) seed.slope_cover = 0.1;
+  EXPECT_THAT(lead_paragraphs(run), HasSubstr("No slope of the rock's own: it lies thin on the bench face"));
 }
 
 TEST(ReportText, LeadSaysWhenSectionsDoNotStandForThePile) {
