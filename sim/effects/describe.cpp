@@ -21,7 +21,7 @@ D50 is that of the scenario's grading, or the size that `effects.reference.diame
 several gradings. The prior is the range in which a diagnosis looks. The pictures show real runs of three seeds, made by
 `docs/pictures/effects/make.sh`: heaps of 15 kg of laboratory rock, or a load of 20 t over a bench of 4 m in three sections. They show what
 those piles show, no law; what restitution, twisting, weakening, vibration and undamped_flight do there is not beyond the scatter of seeds.
-Clumps are drawn at mu_r 0.05, restitution at local damping 0.2, breakage far beyond its prior.
+Clumps are drawn at mu_r 0.05, restitution at local damping 0.2.
 
 This page is what `scree effects --document` prints.
 )";
