@@ -23,7 +23,7 @@ void add_ensemble_options(CLI::App* app, EnsembleOptions& ensemble) {
   app->add_option(
          "--jobs", ensemble.jobs,
          "Runs side by side; default: as many as cores. Where fewer are left to do they get more threads")
-      ->check(CLI::Range(1, 1024));
+      ->check(whole(1, 1024));
   app->add_flag("--again", ensemble.again, "Try runs that failed before again");
   app->add_option("--checkpoint-minutes", ensemble.checkpoint_minutes,
                   "Wall time between checkpoints of a run, from which it goes on when the command is "
@@ -44,10 +44,10 @@ Command run_command(CLI::App& all) {
   const CLI::Option* const file = app->add_option("file", run.file, "Scenario file (YAML)");
   app->add_option("--seeds", run.seeds,
                   "Number of seeds: those of the scenario first, then the integers that follow the last")
-      ->check(CLI::Range(1, 1000));
+      ->check(whole(1, 1000));
   app->add_option("--threads", run.threads,
                   "Worker threads; default: as many as cores. The numbers do not depend on it")
-      ->check(CLI::Range(1, 256));
+      ->check(whole(1, 256));
   app->add_option("--out", run.out,
                   "Folder for the results; default: runs/NAME, or runs/NAME-2 ... when it exists");
   app->add_option("--set", run.overrides, "Change a value: --set material.mu=0.5 (may be repeated)")
@@ -154,7 +154,7 @@ Command reproduce_command(CLI::App& all) {
   CLI::App* app = all.add_subcommand(
       "reproduce", "Simulate the cases of the thesis and hold every printed value against them");
   app->add_option("cases", reproduce.cases, "Cases: names of files in scenarios/thesis; default: all");
-  app->add_option("--seeds", reproduce.seeds, "Seeds of each case, at most")->check(CLI::Range(1, 1000));
+  app->add_option("--seeds", reproduce.seeds, "Seeds of each case, at most")->check(whole(1, 1000));
   add_ensemble_options(app, reproduce.ensemble);
   app->add_option("--out", reproduce.out, "Folder for the report; default: a free runs/reproduction");
   runs_nothing(app, app->add_flag("--list", reproduce.list, "Report what the store has; run nothing"));
@@ -234,7 +234,7 @@ Command analyse_command(CLI::App& all) {
       ->take_all()
       ->allow_extra_args(false);
   app->add_option("--frame", analyse.frame, "Frame of the file, from 1; default: the last")
-      ->check(CLI::Range(1, 1'000'000'000));
+      ->check(whole(1, 1'000'000'000));
   app->add_option("--length-unit", analyse.length_unit,
                   "Unit of files that state none: m, cm, mm; default: m");
   app->add_option("--up", analyse.up, "Axis that points up, z or y; default: z")
@@ -293,13 +293,13 @@ Command twin_command(CLI::App& all) {
                   "weak, medium, strong (2, 4, 8 standard uncertainties), random, or a number")
       ->capture_default_str();
   app->add_option("--repeats", twin.repeats, "Of every experiment")
-      ->check(CLI::Range(2, 1000))
+      ->check(whole(2, 1000))
       ->capture_default_str();
   app->add_option("--noise", twin.noise, "Error of a measurement, in standard deviations between seeds")
       ->check(within(0, 100))
       ->capture_default_str();
   app->add_option("--seed", twin.seed, "Draws all that is random; default: another every time")
-      ->check(CLI::Range(0, 1'000'000'000));
+      ->check(whole(0, 1'000'000'000));
   app->add_option("--engine", twin.engine, "Engine that makes the data")
       ->check(CLI::IsMember({"rrlinear", "impulse"}));
   add_ensemble_options(app, twin.ensemble);
@@ -368,7 +368,7 @@ Command image_command(CLI::App& all) {
                   "Length of a pixel, like 1.2cm/px; default: from magenta discs in the picture");
   app->add_option("--target-diameter", image.target_diameter, "Of the discs")->capture_default_str();
   app->add_option("--sections", image.sections, "Equal parts of the slope, S1 at the top")
-      ->check(CLI::Range(1, 50))
+      ->check(whole(1, 50))
       ->capture_default_str();
   app->add_option(
       "--region", image.region,
@@ -458,7 +458,7 @@ Command render_command(CLI::App& all) {
   app->add_option("--target-diameter", render.target_diameter, "Of the magenta disc, or none")
       ->capture_default_str();
   app->add_option("--seed", render.seed, "Of places, texture and noise")
-      ->check(CLI::Range(0, 1'000'000'000))
+      ->check(whole(0, 1'000'000'000))
       ->capture_default_str();
   app->add_flag("--force", render.force, "Write over files that are there");
   app->footer(
@@ -482,5 +482,8 @@ std::vector<Command> add_commands(CLI::App& all) {
         compare_command, validate_command, analyse_command, diagnose_command, twin_command, field_command,
         effects_command, image_command, render_command, schema_command})
     commands.push_back(add(all));
+  for (CLI::App* command : all.get_subcommands({}))
+    for (CLI::Option* option : command->get_options())
+      if (option->get_items_expected_max() > 0) option->check(given());
   return commands;
 }

@@ -29,6 +29,10 @@ std::unique_ptr<scree::ResultsStore> open_store(const fs::path& named, StoreUse 
     return nullptr;
   }
   std::error_code error;
+  if (file.string() == ":memory:" || (fs::exists(file, error) && !fs::is_regular_file(file, error))) {
+    fmt::print(stderr, "{}: is no file, and a store is one; take another --store\n", file.string());
+    return nullptr;
+  }
   if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
   try {
     using Access = scree::ResultsStore::Access;

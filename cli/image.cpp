@@ -304,6 +304,9 @@ int run_image(const ImageOptions& options) {
   scree::write_text_file(out / "gradings.csv", scree::gradings_csv(report.photos));
   scree::write_text_file(out / "models.csv", scree::models_csv(report.photos, options.sections));
   scree::write_text_file(out / "passing.csv", scree::passing_csv(report.photos));
+  // Of an older analysis, where there are none now.
+  std::error_code ignored;
+  for (const char* file : {"bias.csv", "bias.svg", "effects.yaml"}) fs::remove(out / file, ignored);
   if (!truths.empty()) {
     std::vector<scree::CheckedPhoto> checked;
     for (std::size_t i = 0; i < truths.size(); ++i) checked.push_back({&report.photos[i].found, &truths[i]});
@@ -313,7 +316,6 @@ int run_image(const ImageOptions& options) {
     if (!report.bias->says_something()) {
       fmt::print("note: no effects.yaml: {} known grains are detected, too few to say anything of size\n",
                  report.bias->matched);
-      fs::remove(out / "effects.yaml");  // of an older analysis
     } else {
       scree::write_text_file(out / "effects.yaml", effects_yaml(*report.bias, options.scenario, out));
     }

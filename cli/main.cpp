@@ -1,11 +1,17 @@
 // scree: one program, one file a subcommand.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <filesystem>
+#include <iostream>
 #include <new>
 #include <string>
 #include <vector>
@@ -28,6 +34,36 @@ void on_interrupt(int signal) {
 }
 
 std::vector<std::string> arguments;  // without the program
+
+// A message that nobody can read is no reason to end a run: of stderr's errors nothing is heard.
+ssize_t say_if_possible(void*, const char* text, size_t size) {
+  for (size_t done = 0; done < size;) {
+    const ssize_t now = write(STDERR_FILENO, text + done, size - done);
+    if (now <= 0 && errno != EINTR) break;
+    done += static_cast<size_t>(std::max<ssize_t>(now, 0));
+  }
+  return static_cast<ssize_t>(size);
+}
+
+// Streams that were closed (>&-) would be files that a run opens; stderr swallows its errors.
+void make_streams_safe() {
+  for (int number = STDIN_FILENO; number <= STDERR_FILENO; ++number)
+    if (fcntl(number, F_GETFD) == -1 && open("/dev/null", O_RDWR) < 0) return;
+  if (FILE* safe = fopencookie(nullptr, "w", {nullptr, say_if_possible, nullptr, nullptr})) {
+    setvbuf(safe, nullptr, _IONBF, 0);
+    stderr = safe;
+  }
+}
+
+// A code of success stands only if all that was said on stdout arrived.
+int with_all_said(int code) {
+  std::cout.flush();
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return code;
+  fmt::print(stderr, "scree: cannot write to the standard output: {}\n",
+             errno != 0 ? std::strerror(errno) : "it was not taken whole");
+  return code == kOk ? kFailed : code;
+}
 
 constexpr const char* kExamples = R"(
 Examples:
@@ -93,6 +129,7 @@ std::string command_line() {
 }
 
 int main(int argc, char** argv) {
+  make_streams_safe();
   arguments = {argv + 1, argv + argc};
   CLI::App app{"scree simulates how mine waste rock segregates when it is dumped.", "scree"};
   app.footer(kExamples);
@@ -103,7 +140,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
+    if (error.get_exit_code() == 0) return with_all_said(app.exit(error));
     const bool names_one = argc > 1 && argv[1][0] != '-';
     if (names_one && app.get_subcommands().empty()) {
       std::vector<std::string> names;
@@ -128,6 +165,9 @@ int main(int argc, char** argv) {
   action.sa_handler = on_interrupt;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction hangup = {};  // a lost terminal ends like Ctrl-C, but not under nohup
+  sigaction(SIGHUP, nullptr, &hangup);
+  if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
   try {
     for (const Command& command : commands) {
       if (!*command.app) continue;
@@ -138,7 +178,7 @@ int main(int argc, char** argv) {
                    scree::one_line(asset_dir().string()));
         return kBadInput;
       }
-      return command.run();
+      return with_all_said(command.run());
     }
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "scree: the memory of this machine does not suffice\n");

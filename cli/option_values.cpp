@@ -68,6 +68,26 @@ CLI::Validator within(double low, double high) {
   return {refuse, fmt::format("in [{:g} - {:g}]", low, high)};
 }
 
+CLI::Validator whole(std::int64_t low, std::int64_t high) {
+  const auto refuse = [=](const std::string& text) {
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool plain = error == std::errc() && end == text.data() + text.size() && text.front() != '-' &&
+                       (text.size() == 1 || text.front() != '0');
+    if (plain && value >= low && value <= high) return std::string();
+    return plain || value < 0 ? fmt::format("Value {} not in range {} to {}", text, low, high)
+                              : fmt::format("Value {} is no whole number", text);
+  };
+  return {refuse, fmt::format("in [{} - {}]", low, high)};
+}
+
+CLI::Validator given() {
+  const auto refuse = [](const std::string& text) {
+    return text.empty() || text.starts_with("--") ? std::string("needs a value") : std::string();
+  };
+  return {refuse, ""};
+}
+
 bool is_of_kind(const std::filesystem::path& file, scree::FileKind wanted) {
   const std::string why = scree::why_another_kind(file, wanted);
   if (!why.empty()) fmt::print(stderr, "{}\n", why);

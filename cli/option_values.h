@@ -16,6 +16,12 @@ struct ScenarioError;
 /// A number from low to high. CLI::Range lets nan pass.
 CLI::Validator within(double low, double high);
 
+/// A whole number from low to high, in decimal digits. CLI::Range reads 010 as 8 and 0x2 as 2.
+CLI::Validator whole(std::int64_t low, std::int64_t high);
+
+/// Something, and no option: CLI11 takes `--out= --force` for a folder named --force.
+CLI::Validator given();
+
 /// Threads or jobs: as many as are asked for, or as the machine has cores where 0 are.
 int cores_or(int asked);
 

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "cli/ensemble/exit_code.h"
+#include "sim/material/input_bytes.h"
 
 namespace fs = std::filesystem;
 
@@ -32,13 +35,18 @@ bool may_fill(const fs::path& folder, bool force) {
 bool may_write(const fs::path& file) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   std::error_code none;
-  const bool there = fs::is_directory(folder, none), is_folder = fs::is_directory(file, none);
-  const bool may = access((fs::exists(file, none) ? file : folder).c_str(), W_OK) == 0;
-  if (there && !is_folder && may) return true;
-  fmt::print(stderr, "{}: cannot be written: {}\n", file.string(),
-             is_folder ? "it is a folder"
-             : !there  ? "its folder is not there"
-                       : "no permission");
+  const bool there = fs::is_directory(folder, none), is_there = fs::exists(file, none);
+  const bool is_folder = fs::is_directory(file, none), other = is_there && !fs::is_regular_file(file, none);
+  const bool may = access((is_there ? file : folder).c_str(), W_OK) == 0;
+  const std::string name = file.string();
+  const bool odd = std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20; });
+  if (there && !other && may && !odd) return true;
+  fmt::print(stderr, "{}: cannot be written: {}\n", scree::one_line(name),
+             odd         ? "its name has a control character"
+             : is_folder ? "it is a folder"
+             : other     ? "it is there and no file"
+             : !there    ? "its folder is not there"
+                         : "no permission");
   return false;
 }
 

@@ -13,6 +13,7 @@
 #include "cli/bench_in_file.h"
 #include "cli/commands.h"
 #include "cli/option_values.h"
+#include "cli/output_folder.h"
 #include "cli/picture_options.h"
 #include "sim/io/snapshot_reader.h"
 #include "sim/io/text_file.h"
@@ -129,6 +130,15 @@ int run_render(const RenderOptions& options) {
                  file.string());
       return kBadInput;
     }
+  if (options.out.has_parent_path()) {
+    std::error_code error;
+    fs::create_directories(options.out.parent_path(), error);
+    if (error) {
+      fmt::print(stderr, "{}: cannot be written: {}\n", options.out.string(), error.message());
+      return kBadInput;
+    }
+  }
+  if (!may_write(options.out) || !may_write(truth)) return kBadInput;
   scree::Photo made;
   View view;
   std::optional<std::array<int, 4>> region;
@@ -147,7 +157,6 @@ int run_render(const RenderOptions& options) {
     fmt::print(stderr, "scree: {}\n", error.what());
     return kBadInput;
   }
-  if (options.out.has_parent_path()) fs::create_directories(options.out.parent_path());
   scree::write_picture(options.out, made.picture);
   scree::write_text_file(truth, scree::truth_csv(made.truth));
   std::string chi;

@@ -104,8 +104,8 @@ std::optional<Plan> plan_resumed(const RunOptions& options) {
   Plan plan;
   plan.resume = true;
   plan.out = options.resume;
-  plan.record = read_record(plan.out);
   plan.lock = std::make_unique<FolderLock>(plan.out, kDying);
+  plan.record = read_record(plan.out);  // as whoever held the folder has left it
   const fs::path file = plan.out / "scenario.yaml";
   scree::ScenarioResult loaded = scree::load_scenario(file, {}, asset_dir());
   if (!nothing_wrong(loaded.errors, loaded.warnings)) return std::nullopt;
@@ -144,11 +144,31 @@ void forget_checkpoints(const Plan& plan) {
   }
 }
 
+// What a report of this folder consists of: of an older run it must not stand beside numbers of this one.
+void forget_report(const Plan& plan) {
+  std::error_code ignored;
+  fs::remove(plan.out / "report.html", ignored);
+  fs::remove_all(plan.out / "pictures", ignored);
+}
+
+// What another run has left in the folder, with --force: all that a run writes, of whatever seeds.
+void forget_run(const Plan& plan) {
+  remove_record(plan.out);
+  forget_report(plan);
+  std::error_code ignored;
+  for (const char* file : {"summary.json", "sections.csv", "ksat.csv"}) fs::remove(plan.out / file, ignored);
+  for (const fs::path& folder : scree::seed_folders(plan.out)) {
+    Checkpoints::remove_pile_from(folder);
+    scree::TrajectoryWriter::forget_saved(folder / "particles.h5");
+    for (const char* file : {"particles.h5", "particles.xdmf", "particles.xyz"})
+      fs::remove(folder / file, ignored);
+    Checkpoints::remove_from(folder);
+  }
+}
+
 // The folder as it is before the first step.
 void begin_folder(const Plan& plan) {
-  forget_checkpoints(plan);  // of another run, with --force
-  for (const std::uint64_t seed : plan.scenario.seeds)
-    Checkpoints::remove_pile_from(scree::seed_folder(plan.out, seed));
+  forget_run(plan);
   scree::write_text_file(plan.out / "scenario.yaml", plan.scenario.resolved_yaml);
   if (plan.checkpoints()) write_record(plan.out, plan.record);
 }
@@ -233,7 +253,10 @@ std::vector<std::string> write_results(const Plan& plan, const scree::RunResult&
   scree::write_summary(result, plan.out / "summary.json");
   scree::write_sections_csv(result, plan.out / "sections.csv");
   scree::write_conductivity_csv(result, plan.out / "ksat.csv");
-  if (plan.summary_only) return {};
+  if (plan.summary_only) {
+    forget_report(plan);  // of the part before, where it was resumed
+    return {};
+  }
   scree::SceneFacts scene;
   if (const scree::BenchSpec* bench = bench_of(plan.scenario)) scene.bench_slope = bench->slope_deg;
   return scree::write_report(result, plan.out, scene);
@@ -266,7 +289,16 @@ int run_run(const RunOptions& options) {
   for (const std::string& failure : result.failures) fmt::print(stderr, "{}\n", failure);
   const int code = result.failures.empty() ? ended.code : static_cast<int>(kWatchFailed);
   result.failures.insert(result.failures.begin(), ended.failures.begin(), ended.failures.end());
-  const std::vector<std::string> missing = write_results(plan, result);
+  std::vector<std::string> missing;
+  try {
+    missing = write_results(plan, result);
+  } catch (const std::exception& error) {  // no gnuplot, a full disk
+    fmt::print(stderr, "scree: {}\n", scree::one_line(error.what()));
+    if (fs::exists(plan.out / "summary.json"))
+      fmt::print(stderr, "the numbers are in {}\n", (plan.out / "summary.json").string());
+    ended.worth_resuming = ended.keep_checkpoints = plan.checkpoints() || plan.resume;
+    return end(kFailed);
+  }
   scree::print_result(result);
   fmt::print("\n");
   if (!plan.summary_only) return end(std::max(code, tell_report(plan.out, missing)));

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <thread>
 
 #include "cli/commands.h"
@@ -65,14 +66,22 @@ RunRecord read_record(const fs::path& folder) {
   }
   try {
     const nlohmann::json json = nlohmann::json::parse(in);
-    return {json.at("program"),
-            json.at("scenario"),
-            json.at("name"),
-            json.at("seeds"),
-            json.at("summary_only"),
-            json.at("checkpoint_minutes"),
-            json.value("keep_pile", false)};
-  } catch (const nlohmann::json::exception&) {
+    RunRecord record{json.at("program"),
+                     json.at("scenario"),
+                     json.at("name"),
+                     {},
+                     json.at("summary_only"),
+                     json.at("checkpoint_minutes"),
+                     json.value("keep_pile", false)};
+    for (const nlohmann::json& seed : json.at("seeds")) {
+      if (!seed.is_number_unsigned()) throw std::invalid_argument("no seed");
+      record.seeds.push_back(seed);
+    }
+    const std::set<std::uint64_t> different(record.seeds.begin(), record.seeds.end());
+    if (different.empty() || different.size() != record.seeds.size() || !(record.checkpoint_minutes >= 0))
+      throw std::invalid_argument("no seeds of a run");
+    return record;
+  } catch (const std::exception&) {
     throw std::runtime_error(fmt::format("{}: damaged; start anew from scenario.yaml with another --out",
                                          record_in(folder).string()));
   }

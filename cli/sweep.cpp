@@ -159,7 +159,21 @@ bool can_be_written(const SweepOptions& options, const scree::Sweep& sweep) {
     fmt::print(stderr, "--plot {}: an SVG is drawn; name it so, FILE.svg\n", options.plot.string());
     return false;
   }
-  return (options.csv.empty() || may_write(options.csv)) && (options.plot.empty() || may_write(options.plot));
+  std::error_code none;
+  for (const fs::path& file : {options.csv, options.plot}) {
+    if (file.empty()) continue;
+    if (!may_write(file)) return false;
+    if (fs::equivalent(file, options.file, none) || fs::equivalent(file, options.from, none)) {
+      fmt::print(stderr, "{}: is read here; write to another file\n", file.string());
+      return false;
+    }
+  }
+  if (!options.csv.empty() &&
+      fs::weakly_canonical(options.csv, none) == fs::weakly_canonical(options.plot, none)) {
+    fmt::print(stderr, "--plot {}: is the file of --export\n", options.plot.string());
+    return false;
+  }
+  return true;
 }
 
 // Tables and pictures of what is known.
@@ -226,7 +240,7 @@ int run_sweep(const SweepOptions& options) {
     return kInterrupted;
   }
   if (progress.failed > 0)
-    fmt::print(stderr, "{} runs failed; scree sweep {} --failed says why\n", progress.failed,
-               options.file.string());
+    fmt::print(stderr, "{} runs failed; scree sweep {} --failed says why, --again tries them again\n",
+               progress.failed, options.file.string());
   return shown != kOk ? shown : progress.failed > 0 ? kFailed : kOk;
 }

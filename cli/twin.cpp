@@ -74,6 +74,28 @@ bool draw(const TwinOptions& options, const scree::ModelSpace& space, scree::Twi
   return true;
 }
 
+// Whether the answer may be written there: what is refused here is not refused after all simulations.
+bool may_seal(const fs::path& answer, const fs::path& out, bool force) {
+  std::error_code none;
+  const fs::path inside = fs::weakly_canonical(fs::absolute(answer), none)
+                              .lexically_relative(fs::weakly_canonical(fs::absolute(out), none));
+  if (!inside.empty() && *inside.begin() != "..") {
+    fmt::print(stderr, "--answer {}: lies in the dataset's folder, which is given away\n", answer.string());
+    return false;
+  }
+  if (!answer.has_filename()) {
+    fmt::print(stderr, "--answer {}: the name of a file is wanted\n", answer.string());
+    return false;
+  }
+  if (fs::is_regular_file(answer, none) && !force) {
+    fmt::print(stderr, "{}: is there already; choose another --answer, or --force to write over it\n",
+               answer.string());
+    return false;
+  }
+  const fs::path folder = answer.has_parent_path() ? answer.parent_path() : ".";
+  return !fs::exists(folder, none) || may_write(answer);  // one that is not there is made
+}
+
 }  // namespace
 
 int run_twin(const TwinOptions& options) {
@@ -98,8 +120,10 @@ int run_twin(const TwinOptions& options) {
     fmt::print(stderr, "--engine impulse: has no effects; take --effect none\n");
     return kBadInput;
   }
-  const fs::path out = options.out.empty() ? free_run_folder("twin") : options.out;
+  const fs::path out =
+      options.out.empty() ? free_run_folder("twin") : (options.out / "").lexically_normal().parent_path();
   const fs::path answer = options.answer.empty() ? fs::path(out.string() + ".answer.json") : options.answer;
+  if (!may_seal(answer, out, options.force)) return kBadInput;
   const bool was_there = fs::exists(out);
   if (!prepare_folder(out, options.force)) return kBadInput;
   const auto store = open_store(options.ensemble.store, StoreUse::change);
@@ -120,8 +144,10 @@ int run_twin(const TwinOptions& options) {
     if (!was_there) fs::remove(out, left);
     if (!were_runs) fs::remove(hidden_file, left);
     return kBadInput;
-  } catch (const scree::Stopped& error) {
-    fmt::print(stderr, "{}\n", error.what());
+  } catch (const scree::Stopped&) {
+    fmt::print(stderr, "interrupted; to go on: {}{}{}\n", command_line(),
+               options.seed ? "" : fmt::format(" --seed {}", spec.seed),
+               options.out.empty() ? fmt::format(" --out {}", out.string()) : "");
     return kInterrupted;
   }
   fmt::print("dataset: {}\nsealed answer: {}\n", (out / "dataset.yaml").string(), answer.string());

@@ -40,6 +40,14 @@ int spawn_gnuplot(const std::filesystem::path& script, const std::filesystem::pa
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+/// Whether a picture is whole: gnuplot does not notice a full disk. Both formats have an end of their own.
+bool is_whole(const std::filesystem::path& picture) {
+  std::ifstream in(picture, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const auto end = bytes.rfind(bytes.starts_with("\x89PNG") ? "IEND" : "</svg>");
+  return end != std::string::npos && bytes.size() - end <= 10;
+}
+
 }  // namespace
 
 std::string gnuplot_quoted(std::string_view text) {
@@ -63,16 +71,23 @@ std::string chart_terminal(int width, int height) {
 
 void run_gnuplot(const std::string& script, const std::filesystem::path& output) {
   const ScratchFolder scratch;
-  std::error_code ignored;
-  std::filesystem::remove(output, ignored);
+  const std::filesystem::path part = output.string() + ".part";
   write_text_file(scratch.path() / "picture.gp",
                   fmt::format("set encoding utf8\nset output {}\n{}\nunset output\n",
-                              gnuplot_quoted(std::filesystem::absolute(output).string()), script));
+                              gnuplot_quoted(std::filesystem::absolute(part).string()), script));
   const int status = spawn_gnuplot(scratch.path() / "picture.gp", scratch.path() / "messages.txt");
   if (status == -1 || status == 127)
     throw std::runtime_error(
         "cannot draw pictures: gnuplot does not start; install it (Debian: apt install gnuplot-nox)");
-  if (status == 0 && std::filesystem::exists(output) && std::filesystem::file_size(output) > 0) return;
+  std::error_code error;
+  if (status == 0 && is_whole(part)) {
+    std::filesystem::rename(part, output, error);
+    if (error) fail_to_write(output, error.message());
+    return;
+  }
+  const bool cut_off = status == 0 && std::filesystem::exists(part, error);
+  std::filesystem::remove(part, error);
+  if (cut_off) fail_to_write(output, "the picture is not whole; is the disk full?");
   std::ifstream in(scratch.path() / "messages.txt");
   std::string words{std::istreambuf_iterator<char>(in), {}};
   for (char& c : words)

@@ -251,7 +251,8 @@ class Ensemble {
         waiting_.push_back(request);
         return;
       }
-      failure = fmt::format("interrupted {} times", kMostInterruptions);
+      failure =
+          fmt::format("{} {} times", failure.empty() ? "interrupted" : failure + ",", kMostInterruptions);
     }
     sort_piles(*request);
     const bool ours = failure.empty() ? store_.finish(ended.key, text, outputs, seconds)

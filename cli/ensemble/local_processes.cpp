@@ -125,16 +125,20 @@ std::optional<EndedJob> LocalProcesses::wait(double patience) {
       const bool lost = ended_one < 0 && errno == ECHILD;  // it ended, and nobody knows how
       if (ended_one != process->pid && !lost) continue;
       const int code = !lost && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+      // By whoever lacks memory or shuts down; a crash of its own has another signal.
+      const bool killed =
+          !lost && WIFSIGNALED(status) &&
+          (WTERMSIG(status) == SIGKILL || WTERMSIG(status) == SIGTERM || WTERMSIG(status) == SIGHUP);
       EndedJob ended{process->job.key,
-                     code == 0              ? JobEnd::good
-                     : code == kInterrupted ? JobEnd::interrupted
-                     : code == kBadInput    ? JobEnd::refused
-                                            : JobEnd::bad,
+                     code == 0                        ? JobEnd::good
+                     : killed || code == kInterrupted ? JobEnd::interrupted
+                     : code == kBadInput              ? JobEnd::refused
+                                                      : JobEnd::bad,
                      {},
                      now() - process->started,
                      process->job.resume,
                      share_in(process->job.folder / "log.txt", process->job.resume).before};
-      if (ended.end == JobEnd::bad || ended.end == JobEnd::refused) {
+      if (killed || ended.end == JobEnd::bad || ended.end == JobEnd::refused) {
         const std::string words = words_in(process->job.folder / "log.txt");
         ended.message = lost                  ? "it ended, and how is not known"
                         : WIFSIGNALED(status) ? fmt::format("killed by signal {}", WTERMSIG(status))

@@ -6,6 +6,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <vector>
@@ -111,6 +112,19 @@ std::filesystem::path seed_folder(const std::filesystem::path& run, std::uint64_
   return run / fmt::format("seed_{}", seed);
 }
 
+std::vector<std::filesystem::path> seed_folders(const std::filesystem::path& run) {
+  std::vector<std::filesystem::path> found;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(run, none)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("seed_") && name.size() > 5 &&
+        name.find_first_not_of("0123456789", 5) == std::string::npos)
+      found.push_back(entry.path());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
 void write_checkpoint(const std::filesystem::path& file, const CheckpointHeader& header,
                       const std::function<void(StateWriter&)>& state) {
   NewFile out(file);
@@ -128,15 +142,21 @@ CheckpointReader::CheckpointReader(const std::filesystem::path& path) : path_(pa
     throw DamagedCheckpoint(fmt::format("{}: {}", path.string(), why));
   };
   file_.reset(std::fopen(path.c_str(), "rb"));
-  if (!file_) damaged(std::strerror(errno));
+  // What cannot be read may be good for all that is known: it is not said to be damaged.
+  const auto unreadable = [this](int why) {
+    throw std::runtime_error(fmt::format("{}: cannot be read: {}", path_.string(), std::strerror(why)));
+  };
+  if (!file_) unreadable(errno);
   std::error_code error;
   const std::uint64_t size = std::filesystem::file_size(path, error);
+  if (error) unreadable(error.value());
   constexpr std::uint64_t kLeast = kMagicSize + 2 * sizeof(std::uint32_t) + kDigestSize;
-  if (error || size < kLeast) damaged("too short for a checkpoint");
+  if (size < kLeast) damaged("too short for a checkpoint");
 
-  const auto read = [this](void* data, std::size_t count) {
-    if (std::fread(data, 1, count, file_.get()) != count)
-      throw DamagedCheckpoint(fmt::format("{}: cannot be read to its end", path_.string()));
+  const auto read = [this, unreadable](void* data, std::size_t count) {
+    if (std::fread(data, 1, count, file_.get()) == count) return;
+    if (std::ferror(file_.get()) != 0) unreadable(errno);
+    throw DamagedCheckpoint(fmt::format("{}: cannot be read to its end", path_.string()));
   };
   Checksum checksum;
   std::vector<char> buffer(kBuffer);

@@ -28,6 +28,8 @@ inline constexpr std::string_view kCheckpointName = "checkpoint_";
 inline constexpr std::string_view kPileName = "pile";
 /// Where a run keeps both, and all else that it has of a seed.
 std::filesystem::path seed_folder(const std::filesystem::path& run, std::uint64_t seed);
+/// Those that are there.
+std::vector<std::filesystem::path> seed_folders(const std::filesystem::path& run);
 
 /// What a checkpoint is of.
 struct CheckpointHeader {

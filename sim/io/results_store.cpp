@@ -119,7 +119,10 @@ class Statement {
 
  private:
   [[noreturn]] void fail() const {
-    throw std::runtime_error(fmt::format("{}: {}", sqlite3_db_filename(db_, "main"), sqlite3_errmsg(db_)));
+    const int code = sqlite3_errcode(db_);
+    throw std::runtime_error(fmt::format(
+        "{}: {}{}", sqlite3_db_filename(db_, "main"), sqlite3_errmsg(db_),
+        code == SQLITE_CORRUPT || code == SQLITE_NOTADB ? "; put a copy back, or take another --store" : ""));
   }
   sqlite3* db_;
   sqlite3_stmt* statement_ = nullptr;

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 
@@ -11,7 +12,11 @@
 namespace scree {
 
 ScratchFolder::ScratchFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "scree-XXXXXX").string();
+  std::error_code error;
+  const std::filesystem::path place = std::filesystem::temp_directory_path(error);
+  if (error)
+    throw std::runtime_error("there is no folder for temporary files; set TMPDIR to one that can be written");
+  std::string name = (place / "scree-XXXXXX").string();
   if (!mkdtemp(name.data())) fail_to_write(name, std::strerror(errno));
   path_ = name;
 }

@@ -6,7 +6,7 @@
 namespace scree {
 
 /// Writes a text file in one step: a reader sees the old file or the new one, never half of it.
-/// Throws std::runtime_error that names the file and the reason.
+/// Of a link its target is written. Throws std::runtime_error that names the file and the reason.
 void write_text_file(const std::filesystem::path& file, const std::string& text);
 
 /// Throws std::runtime_error "cannot write FILE: REASON".

@@ -327,6 +327,8 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& h5_file, const s
     UndoFile::take_back(h5_file);
   } catch (const std::system_error& error) {
     fail_to_write(h5_file, error.code().message());
+  } catch (const std::runtime_error& error) {
+    throw StateError(error.what());
   }
   ask_for_memory();
   const QuietHdf5 quiet;

@@ -11,7 +11,10 @@
 #include <cerrno>
 #include <cstring>
 #include <optional>
+#include <set>
+#include <stdexcept>
 #include <system_error>
+#include <utility>
 
 namespace scree {
 namespace {
@@ -164,24 +167,40 @@ void UndoFile::take_back(const std::filesystem::path& file) {
   if (old.number < 0) return;
   const OpenFile now(open(file.c_str(), O_RDWR | O_CLOEXEC));
   if (now.number < 0) fail(file);
-  std::array<char, kBlock> bytes;
-  Record record;
-  std::uint64_t at = 0;
   std::optional<std::uint64_t> size;  // of the file at the mark
-  // A record that is not whole was being written when the process was killed; its block was not touched yet.
-  while (read_some(old.number, undo, &record, sizeof record, at) == sizeof record) {
-    at += sizeof record;
-    if (record.size > kBlock) break;
-    if (read_some(old.number, undo, bytes.data(), record.size, at) != record.size ||
-        record.checksum != record.expected(bytes.data()))
-      break;
-    at += record.size;
-    if (!size)
-      size = record.at;
-    else
-      write_all(now.number, file, bytes.data(), record.size, static_cast<std::int64_t>(record.at));
-  }
+  std::array<char, kBlock> bytes;
+  const auto each_block = [&](const auto& apply) {
+    Record record;
+    std::uint64_t at = 0;
+    bool first = true;
+    // A record that is not whole was being written when the process was killed; its block was not touched
+    // yet.
+    while (read_some(old.number, undo, &record, sizeof record, at) == sizeof record) {
+      at += sizeof record;
+      if (record.size > kBlock) break;
+      if (read_some(old.number, undo, bytes.data(), record.size, at) != record.size ||
+          record.checksum != record.expected(bytes.data()))
+        break;
+      at += record.size;
+      if (std::exchange(first, false))
+        size = record.at;
+      else
+        apply(record);
+    }
+  };
+  std::set<std::uint64_t> kept;
+  each_block([&](const Record& record) { kept.insert(record.at / kBlock); });
   if (!size) return;
+  // Where the writer itself has made it shorter, what it cut off was kept.
+  struct stat facts = {};
+  if (fstat(now.number, &facts) != 0) fail(file);
+  for (std::uint64_t at = static_cast<std::uint64_t>(facts.st_size); at < *size;
+       at = (at / kBlock + 1) * kBlock)
+    if (!kept.contains(at / kBlock))
+      throw std::runtime_error(file.string() + ": is shorter than at the checkpoint; was it copied whole?");
+  each_block([&](const Record& record) {
+    write_all(now.number, file, bytes.data(), record.size, static_cast<std::int64_t>(record.at));
+  });
   if (ftruncate(now.number, static_cast<off_t>(*size)) != 0 || fdatasync(now.number) != 0) fail(file);
   if (ftruncate(old.number, sizeof(Record)) != 0) fail(undo);
 }

@@ -32,7 +32,8 @@ class UndoFile {
   void mark();
 
   /// Brings a file back to its last mark; does nothing without one. Nobody may have it open. It may be called
-  /// again if it was killed itself.
+  /// again if it was killed itself. Throws std::runtime_error if a part of the file is gone that its writer
+  /// has not cut off.
   static void take_back(const std::filesystem::path& file);
   /// From now on the file cannot be taken back.
   static void forget(const std::filesystem::path& file);

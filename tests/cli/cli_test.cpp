@@ -257,6 +257,52 @@ TEST_F(Cli, InterruptKeepsWhatIsDone) {
   EXPECT_NE(slurp(out / "report.html").find("ended by the user"), std::string::npos);
 }
 
+// What cannot be said on stderr ends nothing, what is lost on stdout is no success.
+TEST_F(Cli, StreamsThatCannotBeWritten) {
+  for (const char* lost : {"2>&-", "2>/dev/full"}) {
+    EXPECT_EQ(called(SCREE_BINARY " run nowhere.yaml " + std::string(lost)).code, 2) << lost;
+    const fs::path out = folder / "quiet";
+    fs::remove_all(out);
+    EXPECT_EQ(
+        called(SCREE_BINARY " run " + small + " --summary-only --out " + out.string() + " " + lost).code, 0);
+    EXPECT_TRUE(fs::exists(out / "summary.json")) << lost;
+  }
+  for (const char* command : {"schema", "--help", "effects"}) {
+    const Called full = called("sh -c '" SCREE_BINARY " " + std::string(command) + " >/dev/full'");
+    EXPECT_EQ(full.code, 1) << command;
+    EXPECT_NE(full.text.find("cannot write to the standard output"), std::string::npos) << command;
+  }
+}
+
+// gnuplot does not notice a full disk.
+TEST_F(Cli, APictureThatIsCutOffIsNoPicture) {
+  const fs::path svg = folder / "p.svg";
+  std::ofstream(svg) << "the old one";
+  const std::string sweep = std::string(SCREE_BINARY) +
+                            " sweep " SCREE_SOURCE_DIR
+                            "/scenarios/sweeps/repose_lab.yaml --from " SCREE_SOURCE_DIR
+                            "/assets/sweeps/repose_lab.csv --plot " +
+                            svg.string();
+  const Called cut = called("ulimit -f 8; " + sweep);
+  EXPECT_EQ(cut.code, 1) << cut.text;
+  EXPECT_NE(cut.text.find("cannot write " + svg.string()), std::string::npos) << cut.text;
+  EXPECT_EQ(slurp(svg), "the old one");
+  EXPECT_FALSE(fs::exists(svg.string() + ".part"));
+  EXPECT_EQ(called(sweep).code, 0);
+  EXPECT_GT(fs::file_size(svg), 100000u);
+}
+
+TEST_F(Cli, WithoutGnuplotTheNumbersAreThereAndTheReportCanFollow) {
+  const fs::path out = folder / "run";
+  const Called without = called("PATH=/nonexistent " SCREE_BINARY " run " + small + " --out " + out.string());
+  EXPECT_EQ(without.code, 1) << without.text;
+  EXPECT_NE(without.text.find("the numbers are in " + (out / "summary.json").string()), std::string::npos);
+  EXPECT_NE(without.text.find("to go on: scree run --resume"), std::string::npos) << without.text;
+  EXPECT_TRUE(fs::exists(out / "summary.json"));
+  EXPECT_EQ(call("run --resume " + out.string()).code, 0);
+  EXPECT_TRUE(fs::exists(out / "report.html"));
+}
+
 TEST_F(Cli, ValidateAndSchema) {
   const Called good = call("validate " + std::string(SCREE_SOURCE_DIR) + "/scenarios/a1_10m.yaml");
   EXPECT_EQ(good.code, 0) << good.text;

@@ -146,6 +146,39 @@ TEST_F(ResumeCli, InterruptSavesAndSaysHowToGoOn) {
   EXPECT_THAT(again.text, HasSubstr("this run has come to its end; there is nothing to resume"));
 }
 
+// The one that waits for the other must not take its results for an unfinished run.
+TEST_F(ResumeCli, ResumedWhileItStillRunsItIsLeftAlone) {
+  Background run = start(words(in_folder("run"), 1, kOften));
+  run.ended_before([&] { return fs::exists(folder / "run" / "resume.json"); });
+  const Called resumed = call("run --resume " + in_folder("run"));
+  EXPECT_EQ(run.code(), 0) << slurp(folder / "log");
+  EXPECT_EQ(resumed.code, 2) << resumed.text;
+  EXPECT_THAT(resumed.text, HasSubstr("there is nothing to resume"));
+  EXPECT_TRUE(fs::exists(folder / "run" / "summary.json"));
+}
+
+TEST_F(ResumeCli, ALostTerminalEndsARunLikeCtrlC) {
+  Background run = start(words(in_folder("run"), 1, "1000"));
+  run.ended_before([&] { return fs::exists(folder / "run" / "resume.json"); });
+  run.ended_within(0.15);
+  run.send(SIGHUP);
+  EXPECT_EQ(run.code(), 130);
+  EXPECT_EQ(checkpoints_below(folder / "run").size(), 1u);
+}
+
+// With --force nothing of an older run stands beside what the new one has come to.
+TEST_F(ResumeCli, WhatAnOlderRunLeftIsGone) {
+  const std::string run = joined(words(in_folder("run"), 1, "0"));
+  ASSERT_EQ(call(run).code, 0);
+  fs::create_directories(folder / "run" / "seed_77");
+  for (const char* file : {"report.html", "seed_77/particles.h5", "mine.txt"})
+    std::ofstream(folder / "run" / file) << "old";
+  EXPECT_EQ(call(run + " --force").code, 0);
+  EXPECT_FALSE(fs::exists(folder / "run" / "report.html"));
+  EXPECT_FALSE(fs::exists(folder / "run" / "seed_77"));
+  EXPECT_TRUE(fs::exists(folder / "run" / "mine.txt")) << "is not a run's";
+}
+
 TEST_F(ResumeCli, DamagedCheckpointsArePassedOver) {
   ASSERT_EQ(call(joined(words(in_folder("whole"), 1, "0"))).code, 0);
   for (const std::size_t damaged : {1, 2}) {
@@ -182,6 +215,12 @@ TEST_F(ResumeCli, WhatCannotBeResumedIsRefusedWithExitCodeTwo) {
   EXPECT_THAT(refusal("run"), HasSubstr("begun by scree 9.9, this is scree "));
   std::ofstream(folder / "run" / "resume.json") << record.substr(0, 40);
   EXPECT_THAT(refusal("run"), HasSubstr("resume.json: damaged"));
+  for (const char* seeds : {"[]", "[1.7]", "[-1]", "[1, 1]", "[null]"}) {
+    json = nlohmann::json::parse(record);
+    json["seeds"] = nlohmann::json::parse(seeds);
+    std::ofstream(folder / "run" / "resume.json") << json;
+    EXPECT_THAT(refusal("run"), HasSubstr("resume.json: damaged")) << seeds;
+  }
   std::ofstream(folder / "run" / "resume.json") << record;
 
   std::string other = scenario;

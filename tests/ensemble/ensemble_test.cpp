@@ -117,7 +117,7 @@ TEST_F(Runs, OneThatFailsDoesNotStopTheRest) {
   EXPECT_EQ(end.done, 3u);
   EXPECT_EQ(end.failed, 3u);
   EXPECT_EQ(store.find("key2")->message, "seed 1: it blew up");
-  EXPECT_EQ(store.find("key3")->message, "killed by signal 9");
+  EXPECT_EQ(store.find("key3")->message, "killed by signal 9, 3 times");
   EXPECT_NE(store.find("key4")->message.find("not a summary"), std::string::npos);
   end = run_ensemble(requests, store, processes, {"1", false}, go_on);
   EXPECT_EQ(end.ended_here, 0u);
@@ -129,16 +129,18 @@ TEST_F(Runs, OneThatFailsDoesNotStopTheRest) {
 
 TEST_F(Runs, OneThatIsInterruptedAloneIsDoneAgain) {
   ResultsStore store(folder / "store.sqlite");
+  // As by whoever lacks memory: killed, and once is no failure.
   const std::string mark = (folder / "interrupted").string();
   LocalProcesses processes(2, 5,
-                           program("if [ $n = 2 ] && [ ! -e " + mark + " ]; then touch " + mark +
-                                   "; exit 130; fi; if [ $n = 4 ]; then exit 130; fi"));
+                           program("if [ $n = 1 ] && [ ! -e " + mark + "1 ]; then touch " + mark +
+                                   "1; kill -9 $$; fi; if [ $n = 2 ] && [ ! -e " + mark + " ]; then touch " +
+                                   mark + "; exit 130; fi; if [ $n = 4 ]; then exit 130; fi"));
   const EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
   EXPECT_EQ(end.done, 5u);
   EXPECT_EQ(end.failed, 1u);
   EXPECT_EQ(store.find("key2")->outputs.at("angle_deg"), 2);
   EXPECT_EQ(store.find("key4")->message, "interrupted 3 times");
-  EXPECT_EQ(begun().size(), 4u + 2 + 3);
+  EXPECT_EQ(begun().size(), 3u + 2 + 2 + 3);
 }
 
 TEST_F(Runs, InterruptedOnesAreGivenBackAndEnd) {
@@ -263,7 +265,7 @@ TEST_F(Runs, ThoseWithACheckpointGoOnFromIt) {
                         << R"( ]; then
     mkdir -p $out/seed_1; touch $out/resume.json $out/seed_1/checkpoint_1
     if [ -e )" << (folder / "killing").string()
-                        << R"( ]; then kill -9 $$; fi
+                        << R"( ]; then echo "not enough memory"; exit 1; fi
     exec sleep 100
   fi
   mkdir -p $out
@@ -295,14 +297,14 @@ END
     EXPECT_EQ(store.find("key0")->wall_seconds, 500) << "of all its parts";
     EXPECT_FALSE(fs::exists(folder / "store.sqlite.work"));
   }
-  {  // One that was killed alone has failed, and is resumed when it is tried again.
+  {  // One that failed for want of memory is resumed when it is tried again.
     ResultsStore store(folder / "killed.sqlite");
     LocalProcesses processes(2, 5, file);
     fs::remove(folder / "begun");
     std::ofstream(folder / "killing") << "yes";
     EnsembleProgress end = run_ensemble(requests, store, processes, {"1", false}, go_on);
     EXPECT_EQ(end.failed, 2u);
-    EXPECT_EQ(store.find("key0")->message, "killed by signal 9");
+    EXPECT_EQ(store.find("key0")->message, "not enough memory");
     end = run_ensemble(requests, store, processes, {"1", true}, go_on);
     EXPECT_EQ(end.done, 2u);
     EXPECT_EQ(this->begun(), (std::vector<std::string>{"anew", "anew", "resumed", "resumed"}));

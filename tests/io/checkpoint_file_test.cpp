@@ -113,8 +113,22 @@ TEST_F(CheckpointFile, CutAnywhereOrGrownIsNoticed) {
   }
   put(whole + "x");
   EXPECT_NE(why_refused(), "");
-  std::filesystem::remove(file);
-  EXPECT_THAT(why_refused(), HasSubstr("No such file"));
+}
+
+// Of what may be good and is only out of reach (permission, a broken disk) nobody says that it is damaged,
+// and takes it away.
+TEST_F(CheckpointFile, OneThatCannotBeReadIsNotDamaged) {
+  std::filesystem::create_directories(file);
+  for (const std::filesystem::path& path : {file, folder / "none"}) {
+    try {
+      CheckpointReader reader(path);
+      FAIL();
+    } catch (const DamagedCheckpoint& damage) {
+      FAIL() << damage.what();
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("cannot be read: "));
+    }
+  }
 }
 
 TEST_F(CheckpointFile, OneThatCannotBeWrittenLeavesTheOneBefore) {

@@ -76,6 +76,30 @@ TEST_F(Undo, HoldsTheMarkWhenTheFileIsOpenedAgain) {
   }
 }
 
+// A file that was copied in part is no file that its writer has made shorter.
+TEST_F(Undo, RefusesAFileOfWhichAPartIsGone) {
+  const std::string text(20000, 'a');
+  {
+    UndoFile file(path, true);
+    file.write(0, text.data(), text.size());
+    file.mark();
+    file.write(18000, "rock", 4);
+  }
+  const std::string written = bytes(path);
+  std::filesystem::resize_file(path, 9000);
+  for (int k = 0; k < 2; ++k) EXPECT_THROW(UndoFile::take_back(path), std::runtime_error) << k;
+  EXPECT_EQ(std::filesystem::file_size(path), 9000u) << "is left as it is";
+  std::ofstream(path, std::ios::binary) << written;
+  UndoFile::take_back(path);
+  EXPECT_EQ(bytes(path), text);
+  {
+    UndoFile file(path, false);
+    file.resize(9000);
+  }
+  UndoFile::take_back(path);
+  EXPECT_EQ(bytes(path), text);
+}
+
 // A process that is killed while it saves a block leaves a record that is not whole; the block itself is
 // untouched then.
 TEST_F(Undo, PassesOverARecordThatIsNotWhole) {
