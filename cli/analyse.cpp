@@ -159,8 +159,10 @@ int run_analyse(const AnalyseOptions& options) {
       scree::SnapshotRead read = scree::read_snapshot(file, *reading);
       found.push_back(fmt::format("{}: {} grains", file.string(), read.snapshot.grains.size()));
       std::vector<std::string> of_file = read.notes;
-      if (std::error_code none;
-          fs::exists(fs::absolute(file).parent_path().parent_path() / "resume.json", none))
+      const fs::path folder = fs::absolute(file).parent_path();
+      if (std::error_code none; file.filename().string().starts_with("particles.") &&
+                                folder.filename().string().starts_with("seed_") &&
+                                fs::exists(folder.parent_path() / "resume.json", none))
         of_file.push_back(fmt::format("{}: the run that it belongs to has not ended", file.string()));
       try {
         for (const auto& [name, value] : scree::outputs_of_snapshot(*scenario, std::move(read), of_file))

@@ -61,11 +61,20 @@ std::unique_ptr<scree::CheckpointReader> Checkpoints::open(
 std::unique_ptr<scree::CheckpointReader> Checkpoints::newest(
     const std::function<void(const std::string&)>& warn) const {
   const auto found = checkpoints_in(folder_);
+  std::string unreadable;
   for (auto one = found.rbegin(); one != found.rend(); ++one) {
-    if (auto reader = open(one->second, warn)) return reader;
+    try {
+      if (auto reader = open(one->second, warn)) return reader;
+    } catch (const scree::UnreadableCheckpoint& error) {  // may be good: it stays
+      if (unreadable.empty()) unreadable = error.what();
+      warn(error.what());
+      continue;
+    }
     std::error_code ignored;
     fs::remove(one->second, ignored);  // it must not be one of the two that are kept
   }
+  if (!unreadable.empty())
+    throw scree::UnreadableCheckpoint(unreadable + "; mend that, or delete it to begin at the beginning");
   return nullptr;
 }
 

@@ -16,8 +16,12 @@ namespace {
 constexpr double kTerminalInterval = 0.5, kPlainInterval = 30;  // s between lines of progress
 }
 
+fs::path store_file(const fs::path& named) {
+  return named.empty() ? fs::path("runs") / "store.sqlite" : named;
+}
+
 std::unique_ptr<scree::ResultsStore> open_store(const fs::path& named, StoreUse use) {
-  fs::path file = named.empty() ? fs::path("runs") / "store.sqlite" : named;
+  const fs::path file = store_file(named);
   if ((use == StoreUse::plan || (use == StoreUse::list && named.empty())) && !fs::exists(file)) {
     fmt::print(stderr, "note: {} is not there: nothing has been run yet\n", file.string());
     return std::make_unique<scree::ResultsStore>(":memory:");

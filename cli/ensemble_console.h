@@ -13,6 +13,9 @@
 /// is that of an empty store where there is none; what is there (list), where none was named.
 enum class StoreUse { change, look, list, plan };
 
+/// The file named, or runs/store.sqlite.
+std::filesystem::path store_file(const std::filesystem::path& named);
+
 /// The store named, or runs/store.sqlite; none, with a message, if it cannot be opened.
 std::unique_ptr<scree::ResultsStore> open_store(const std::filesystem::path& named, StoreUse use);
 

@@ -244,6 +244,19 @@ bool may_begin(const ImageOptions& options, std::optional<scree::Scenario>& scen
   return options.out.empty() || may_fill(options.out, options.force);
 }
 
+// What an older analysis has left, with --force, and this one may not write anew.
+void forget_older(const fs::path& out) {
+  std::error_code ignored;
+  if (!fs::exists(out / "grains.csv", ignored)) return;
+  for (const char* file : {"bias.csv", "bias.svg", "effects.yaml"}) fs::remove(out / file, ignored);
+  for (const auto& entry : fs::directory_iterator(out, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if ((name.starts_with("overlay_") && name.ends_with(".jpg")) ||
+        (name.starts_with("passing-") && name.ends_with(".svg")))
+      fs::remove(entry.path(), ignored);
+  }
+}
+
 }  // namespace
 
 int run_image(const ImageOptions& options) {
@@ -295,6 +308,7 @@ int run_image(const ImageOptions& options) {
     if (const int code = dataset->check(); code != kOk) return code;
   }
   if (!prepare_folder(out, options.force)) return kBadInput;
+  forget_older(out);
   for (std::size_t i = 0; i < overlays.size(); ++i) {
     report.overlays.push_back(out / ("overlay_" + report.photos[i].name + ".jpg"));
     scree::write_picture(report.overlays.back(), overlays[i]);
@@ -304,9 +318,6 @@ int run_image(const ImageOptions& options) {
   scree::write_text_file(out / "gradings.csv", scree::gradings_csv(report.photos));
   scree::write_text_file(out / "models.csv", scree::models_csv(report.photos, options.sections));
   scree::write_text_file(out / "passing.csv", scree::passing_csv(report.photos));
-  // Of an older analysis, where there are none now.
-  std::error_code ignored;
-  for (const char* file : {"bias.csv", "bias.svg", "effects.yaml"}) fs::remove(out / file, ignored);
   if (!truths.empty()) {
     std::vector<scree::CheckedPhoto> checked;
     for (std::size_t i = 0; i < truths.size(); ++i) checked.push_back({&report.photos[i].found, &truths[i]});

@@ -29,39 +29,62 @@ namespace {
 void on_interrupt(int signal) {
   // A second Ctrl-C does not wait. One from a sweep to its runs, after the end of all (SIGTERM), is the
   // first.
-  if (interrupted == signal) _exit(kInterrupted);
+  // A lost terminal says so twice: the shell to its jobs, and the system to those in the foreground.
+  if (interrupted == signal && signal != SIGHUP) _exit(kInterrupted);
   interrupted = signal;
 }
 
 std::vector<std::string> arguments;  // without the program
 
-// A message that nobody can read is no reason to end a run: of stderr's errors nothing is heard.
-ssize_t say_if_possible(void*, const char* text, size_t size) {
+int stdout_error = 0;  // errno of what was lost there
+
+// Writes what can be written: what is said is no reason to end a run.
+ssize_t say_if_possible(int number, const char* text, size_t size) {
   for (size_t done = 0; done < size;) {
-    const ssize_t now = write(STDERR_FILENO, text + done, size - done);
-    if (now <= 0 && errno != EINTR) break;
-    done += static_cast<size_t>(std::max<ssize_t>(now, 0));
+    const ssize_t now = write(number, text + done, size - done);
+    if (now < 0 && errno == EINTR) continue;
+    if (now <= 0) {
+      if (number == STDOUT_FILENO && stdout_error == 0) stdout_error = errno;
+      break;
+    }
+    done += static_cast<size_t>(now);
   }
   return static_cast<ssize_t>(size);
 }
 
-// Streams that were closed (>&-) would be files that a run opens; stderr swallows its errors.
+// Streams that were closed (>&-) would be files that a run opens; errors of stdout are told at the end, of
+// stderr never.
 void make_streams_safe() {
   for (int number = STDIN_FILENO; number <= STDERR_FILENO; ++number)
     if (fcntl(number, F_GETFD) == -1 && open("/dev/null", O_RDWR) < 0) return;
-  if (FILE* safe = fopencookie(nullptr, "w", {nullptr, say_if_possible, nullptr, nullptr})) {
+  signal(SIGPIPE, SIG_IGN);
+#ifdef __GLIBC__
+  const auto say = [](void*, const char* text, size_t size) {
+    return say_if_possible(STDOUT_FILENO, text, size);
+  };
+  const auto tell = [](void*, const char* text, size_t size) {
+    return say_if_possible(STDERR_FILENO, text, size);
+  };
+  if (FILE* safe = fopencookie(nullptr, "w", {nullptr, say, nullptr, nullptr})) {
+    setvbuf(safe, nullptr, isatty(STDOUT_FILENO) != 0 ? _IOLBF : _IOFBF, BUFSIZ);
+    stdout = safe;
+  }
+  if (FILE* safe = fopencookie(nullptr, "w", {nullptr, tell, nullptr, nullptr})) {
     setvbuf(safe, nullptr, _IONBF, 0);
     stderr = safe;
   }
+#endif
 }
 
-// A code of success stands only if all that was said on stdout arrived.
+// A code of success stands only if all that was said on stdout arrived, or its reader had enough of it.
 int with_all_said(int code) {
-  std::cout.flush();
   errno = 0;
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return code;
-  fmt::print(stderr, "scree: cannot write to the standard output: {}\n",
-             errno != 0 ? std::strerror(errno) : "it was not taken whole");
+  std::cout.flush();
+  if (!std::cout && stdout_error == 0) stdout_error = errno != 0 ? errno : EIO;
+  errno = 0;
+  if (std::fflush(stdout) != 0 && stdout_error == 0) stdout_error = errno;
+  if (stdout_error == 0 || stdout_error == EPIPE) return code;
+  fmt::print(stderr, "scree: cannot write to the standard output: {}\n", std::strerror(stdout_error));
   return code == kOk ? kFailed : code;
 }
 

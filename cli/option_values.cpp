@@ -72,6 +72,8 @@ CLI::Validator whole(std::int64_t low, std::int64_t high) {
   const auto refuse = [=](const std::string& text) {
     std::int64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error == std::errc::result_out_of_range)
+      return fmt::format("Value {} not in range {} to {}", text, low, high);
     const bool plain = error == std::errc() && end == text.data() + text.size() && text.front() != '-' &&
                        (text.size() == 1 || text.front() != '0');
     if (plain && value >= low && value <= high) return std::string();

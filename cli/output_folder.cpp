@@ -40,13 +40,29 @@ bool may_write(const fs::path& file) {
   const bool may = access((is_there ? file : folder).c_str(), W_OK) == 0;
   const std::string name = file.string();
   const bool odd = std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20; });
-  if (there && !other && may && !odd) return true;
+  // /dev/stdout and its like name what a shell has opened, by the process.
+  const bool opened = fs::absolute(fs::is_symlink(file, none) ? fs::read_symlink(file, none) : file)
+                          .string()
+                          .starts_with("/proc/");
+  if (there && !other && may && !odd && !opened) return true;
   fmt::print(stderr, "{}: cannot be written: {}\n", scree::one_line(name),
-             odd         ? "its name has a control character"
-             : is_folder ? "it is a folder"
-             : other     ? "it is there and no file"
-             : !there    ? "its folder is not there"
-                         : "no permission");
+             odd               ? "its name has a control character"
+             : is_folder       ? "it is a folder"
+             : other || opened ? "it is there and no file"
+             : !there          ? "its folder is not there"
+                               : "no permission");
+  return false;
+}
+
+bool may_replace(const fs::path& file, const std::vector<fs::path>& in_use) {
+  if (!may_write(file)) return false;
+  std::error_code none;
+  const auto same = [&](const fs::path& other) {
+    return !other.empty() && (fs::equivalent(file, other, none) ||
+                              fs::weakly_canonical(file, none) == fs::weakly_canonical(other, none));
+  };
+  if (std::none_of(in_use.begin(), in_use.end(), same)) return true;
+  fmt::print(stderr, "{}: is used by this very command; write to another file\n", file.string());
   return false;
 }
 

@@ -14,6 +14,9 @@ bool may_fill(const std::filesystem::path& folder, bool force);
 /// Whether the folder of a file is there, the file is no folder, and it may be written; a message if not.
 bool may_write(const std::filesystem::path& file);
 
+/// The same, and that it is none of those that the command itself works with.
+bool may_replace(const std::filesystem::path& file, const std::vector<std::filesystem::path>& in_use);
+
 /// Makes the folder. False, with a message, if it holds something (unless forced) or cannot be written.
 bool prepare_folder(const std::filesystem::path& folder, bool force);
 

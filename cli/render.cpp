@@ -130,15 +130,12 @@ int run_render(const RenderOptions& options) {
                  file.string());
       return kBadInput;
     }
-  if (options.out.has_parent_path()) {
-    std::error_code error;
-    fs::create_directories(options.out.parent_path(), error);
-    if (error) {
-      fmt::print(stderr, "{}: cannot be written: {}\n", options.out.string(), error.message());
-      return kBadInput;
-    }
+  const fs::path folder = options.out.has_parent_path() ? options.out.parent_path() : ".";
+  if (std::error_code none; !fs::exists(folder, none)) {
+    if (!may_fill(folder, true)) return kBadInput;
+  } else if (!may_write(options.out) || !may_write(truth)) {
+    return kBadInput;
   }
-  if (!may_write(options.out) || !may_write(truth)) return kBadInput;
   scree::Photo made;
   View view;
   std::optional<std::array<int, 4>> region;
@@ -157,6 +154,7 @@ int run_render(const RenderOptions& options) {
     fmt::print(stderr, "scree: {}\n", error.what());
     return kBadInput;
   }
+  if (!prepare_folder(folder, true)) return kBadInput;
   scree::write_picture(options.out, made.picture);
   scree::write_text_file(truth, scree::truth_csv(made.truth));
   std::string chi;

@@ -72,11 +72,12 @@ int run_reproduce(const ReproduceOptions& options) {
   if (!nothing_wrong(loaded.errors, loaded.warnings)) return kBadInput;
   const scree::Sweep& sweep = loaded.sweep;
   if (!options.out.empty() && !may_fill(options.out, options.force)) return kBadInput;
+  if (!options.csv.empty() && !may_replace(options.csv, {options.from, store_file(options.ensemble.store)}))
+    return kBadInput;
 
   std::vector<scree::PointResults> points;
   scree::EnsembleProgress progress;
   if (!options.from.empty()) {
-    if (!options.csv.empty() && !may_write(options.csv)) return kBadInput;
     try {
       points = scree::read_sweep_csv(sweep, options.from, false);
     } catch (const std::runtime_error& error) {
@@ -86,7 +87,7 @@ int run_reproduce(const ReproduceOptions& options) {
   } else {
     const std::vector<scree::RunRequest> requests = scree::requests_of(sweep, asset_dir());
     const auto store = open_store(options.ensemble.store, options.list ? StoreUse::list : StoreUse::change);
-    if (!store || (!options.csv.empty() && !may_write(options.csv))) return kBadInput;
+    if (!store) return kBadInput;
     if (!options.list) progress = run_with_progress(requests, *store, options.ensemble);
     points = scree::look_up(sweep, requests, *store);
   }

@@ -147,8 +147,11 @@ void forget_checkpoints(const Plan& plan) {
 // What a report of this folder consists of: of an older run it must not stand beside numbers of this one.
 void forget_report(const Plan& plan) {
   std::error_code ignored;
-  fs::remove(plan.out / "report.html", ignored);
-  fs::remove_all(plan.out / "pictures", ignored);
+  if (!fs::remove(plan.out / "report.html", ignored)) return;  // whose pictures these are is not known
+  for (const auto& entry : fs::directory_iterator(plan.out / "pictures", ignored))
+    if (entry.path().extension() == ".svg" || entry.path().extension() == ".png")
+      fs::remove(entry.path(), ignored);
+  fs::remove(plan.out / "pictures", ignored);  // if that was all
 }
 
 // What another run has left in the folder, with --force: all that a run writes, of whatever seeds.
@@ -185,7 +188,7 @@ std::vector<SeedRun> run_seeds(const Plan& plan, int threads) {
   settings.checkpoint.scenario = plan.record.scenario;
   settings.checkpoint_minutes = plan.record.checkpoint_minutes;
   settings.resume = plan.resume;
-  settings.keep_finished = runs.size() > 1;
+  settings.keep_finished = runs.size() > 1 || !plan.summary_only;  // a report may fail
   if (plan.record.keep_pile || !plan.pile.empty()) settings.pile = pile_hash(scenario);
   settings.keep_pile = plan.record.keep_pile;
   scree::ProgressDisplay display(scenario.seeds);
@@ -297,7 +300,7 @@ int run_run(const RunOptions& options) {
     if (fs::exists(plan.out / "summary.json"))
       fmt::print(stderr, "the numbers are in {}\n", (plan.out / "summary.json").string());
     ended.worth_resuming = ended.keep_checkpoints = plan.checkpoints() || plan.resume;
-    return end(kFailed);
+    return end(std::max<int>(code, kFailed));
   }
   scree::print_result(result);
   fmt::print("\n");

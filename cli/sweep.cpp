@@ -159,21 +159,10 @@ bool can_be_written(const SweepOptions& options, const scree::Sweep& sweep) {
     fmt::print(stderr, "--plot {}: an SVG is drawn; name it so, FILE.svg\n", options.plot.string());
     return false;
   }
-  std::error_code none;
-  for (const fs::path& file : {options.csv, options.plot}) {
-    if (file.empty()) continue;
-    if (!may_write(file)) return false;
-    if (fs::equivalent(file, options.file, none) || fs::equivalent(file, options.from, none)) {
-      fmt::print(stderr, "{}: is read here; write to another file\n", file.string());
-      return false;
-    }
-  }
-  if (!options.csv.empty() &&
-      fs::weakly_canonical(options.csv, none) == fs::weakly_canonical(options.plot, none)) {
-    fmt::print(stderr, "--plot {}: is the file of --export\n", options.plot.string());
-    return false;
-  }
-  return true;
+  const fs::path store = store_file(options.ensemble.store);
+  return (options.csv.empty() || may_replace(options.csv, {options.file, options.from, store})) &&
+         (options.plot.empty() ||
+          may_replace(options.plot, {options.file, options.from, store, options.csv}));
 }
 
 // Tables and pictures of what is known.

@@ -120,9 +120,11 @@ int run_twin(const TwinOptions& options) {
     fmt::print(stderr, "--engine impulse: has no effects; take --effect none\n");
     return kBadInput;
   }
-  const fs::path out =
-      options.out.empty() ? free_run_folder("twin") : (options.out / "").lexically_normal().parent_path();
-  const fs::path answer = options.answer.empty() ? fs::path(out.string() + ".answer.json") : options.answer;
+  fs::path out = options.out.empty() ? free_run_folder("twin") : options.out;
+  if (!out.has_filename()) out = out.parent_path();  // measured/
+  const bool by_dots = out.filename() == "." || out.filename() == "..";
+  const std::string name = by_dots ? fs::canonical(out).string() : out.string();
+  const fs::path answer = options.answer.empty() ? fs::path(name + ".answer.json") : options.answer;
   if (!may_seal(answer, out, options.force)) return kBadInput;
   const bool was_there = fs::exists(out);
   if (!prepare_folder(out, options.force)) return kBadInput;

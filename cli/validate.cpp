@@ -99,7 +99,8 @@ int validate_grading(const std::filesystem::path& file) {
                grading.diameter(0.9));
     return kOk;
   } catch (const scree::FileError& error) {
-    fmt::print(stderr, "{}; a table is taken for a grading here, one of a dataset is checked with its dataset\n",
+    fmt::print(stderr,
+               "{}; a table is taken for a grading here, one of a dataset is checked with its dataset\n",
                error.what());
     return kBadInput;
   }
@@ -109,7 +110,7 @@ int validate_grading(const std::filesystem::path& file) {
 
 int run_validate(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   const scree::FileKind kind = scree::kind_of(file);
-  const bool table = file.extension() == ".csv";
+  const bool table = file.extension() == ".csv" || file.extension() == ".CSV";
   if ((table || (kind != scree::FileKind::scenario && kind != scree::FileKind::unknown)) &&
       !overrides.empty()) {
     fmt::print(stderr, "--set: changes a scenario, and {} is none\n", file.string());

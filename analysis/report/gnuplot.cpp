@@ -71,7 +71,7 @@ std::string chart_terminal(int width, int height) {
 
 void run_gnuplot(const std::string& script, const std::filesystem::path& output) {
   const ScratchFolder scratch;
-  const std::filesystem::path part = output.string() + ".part";
+  const std::filesystem::path place = linked_file(output), part = place.string() + ".part";
   write_text_file(scratch.path() / "picture.gp",
                   fmt::format("set encoding utf8\nset output {}\n{}\nunset output\n",
                               gnuplot_quoted(std::filesystem::absolute(part).string()), script));
@@ -81,13 +81,14 @@ void run_gnuplot(const std::string& script, const std::filesystem::path& output)
         "cannot draw pictures: gnuplot does not start; install it (Debian: apt install gnuplot-nox)");
   std::error_code error;
   if (status == 0 && is_whole(part)) {
-    std::filesystem::rename(part, output, error);
+    std::filesystem::rename(part, place, error);
     if (error) fail_to_write(output, error.message());
     return;
   }
   const bool cut_off = status == 0 && std::filesystem::exists(part, error);
   std::filesystem::remove(part, error);
   if (cut_off) fail_to_write(output, "the picture is not whole; is the disk full?");
+  std::filesystem::remove(place, error);  // of other numbers
   std::ifstream in(scratch.path() / "messages.txt");
   std::string words{std::istreambuf_iterator<char>(in), {}};
   for (char& c : words)

@@ -144,7 +144,7 @@ CheckpointReader::CheckpointReader(const std::filesystem::path& path) : path_(pa
   file_.reset(std::fopen(path.c_str(), "rb"));
   // What cannot be read may be good for all that is known: it is not said to be damaged.
   const auto unreadable = [this](int why) {
-    throw std::runtime_error(fmt::format("{}: cannot be read: {}", path_.string(), std::strerror(why)));
+    throw UnreadableCheckpoint(fmt::format("{}: cannot be read: {}", path_.string(), std::strerror(why)));
   };
   if (!file_) unreadable(errno);
   std::error_code error;

@@ -44,6 +44,11 @@ struct DamagedCheckpoint : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// One that may be good, and is out of reach: permission, a broken disk.
+struct UnreadableCheckpoint : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// Writes a checkpoint; `state` gives its bytes. Throws std::runtime_error with the file and the reason (disk
 /// full, no permission); what stood under that name before is untouched then.
 void write_checkpoint(const std::filesystem::path& file, const CheckpointHeader& header,
@@ -52,7 +57,7 @@ void write_checkpoint(const std::filesystem::path& file, const CheckpointHeader&
 /// A checkpoint that was found whole.
 class CheckpointReader {
  public:
-  /// Reads all of it once to check it. Throws DamagedCheckpoint.
+  /// Reads all of it once to check it. Throws DamagedCheckpoint, UnreadableCheckpoint.
   explicit CheckpointReader(const std::filesystem::path& file);
   const CheckpointHeader& header() const { return header_; }
   /// The state, from its beginning on, once.

@@ -197,7 +197,9 @@ void UndoFile::take_back(const std::filesystem::path& file) {
   for (std::uint64_t at = static_cast<std::uint64_t>(facts.st_size); at < *size;
        at = (at / kBlock + 1) * kBlock)
     if (!kept.contains(at / kBlock))
-      throw std::runtime_error(file.string() + ": is shorter than at the checkpoint; was it copied whole?");
+      throw std::runtime_error(
+          file.string() +
+          ": is shorter than at the checkpoint; copy it again, or start anew with another --out");
   each_block([&](const Record& record) {
     write_all(now.number, file, bytes.data(), record.size, static_cast<std::int64_t>(record.at));
   });

@@ -267,6 +267,13 @@ TEST_F(Cli, StreamsThatCannotBeWritten) {
         called(SCREE_BINARY " run " + small + " --summary-only --out " + out.string() + " " + lost).code, 0);
     EXPECT_TRUE(fs::exists(out / "summary.json")) << lost;
   }
+  const fs::path out = folder / "unheard";
+  EXPECT_EQ(called("sh -c 'stdbuf -oL " SCREE_BINARY " run " + small + " --summary-only --out " +
+                   out.string() + " >/dev/full'")
+                .code,
+            1);
+  EXPECT_FALSE(fs::exists(out / "resume.json")) << "it has come to its end";
+  EXPECT_EQ(called("bash -c '" SCREE_BINARY " schema | head -1; exit ${PIPESTATUS[0]}'").code, 0);
   for (const char* command : {"schema", "--help", "effects"}) {
     const Called full = called("sh -c '" SCREE_BINARY " " + std::string(command) + " >/dev/full'");
     EXPECT_EQ(full.code, 1) << command;
@@ -299,7 +306,9 @@ TEST_F(Cli, WithoutGnuplotTheNumbersAreThereAndTheReportCanFollow) {
   EXPECT_NE(without.text.find("the numbers are in " + (out / "summary.json").string()), std::string::npos);
   EXPECT_NE(without.text.find("to go on: scree run --resume"), std::string::npos) << without.text;
   EXPECT_TRUE(fs::exists(out / "summary.json"));
-  EXPECT_EQ(call("run --resume " + out.string()).code, 0);
+  const Called with = call("run --resume " + out.string());
+  EXPECT_EQ(with.code, 0) << with.text;
+  EXPECT_EQ(with.text.find("begins at its beginning"), std::string::npos) << with.text;
   EXPECT_TRUE(fs::exists(out / "report.html"));
 }
 

@@ -12,6 +12,7 @@
 #include "tests/cli/call.h"
 
 namespace fs = std::filesystem;
+using testing::AnyOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -153,7 +154,8 @@ TEST_F(ResumeCli, ResumedWhileItStillRunsItIsLeftAlone) {
   const Called resumed = call("run --resume " + in_folder("run"));
   EXPECT_EQ(run.code(), 0) << slurp(folder / "log");
   EXPECT_EQ(resumed.code, 2) << resumed.text;
-  EXPECT_THAT(resumed.text, HasSubstr("there is nothing to resume"));
+  EXPECT_THAT(resumed.text, AnyOf(HasSubstr("there is nothing to resume"),
+                                  HasSubstr("another scree works in it")));  // on a slow machine
   EXPECT_TRUE(fs::exists(folder / "run" / "summary.json"));
 }
 
@@ -161,7 +163,8 @@ TEST_F(ResumeCli, ALostTerminalEndsARunLikeCtrlC) {
   Background run = start(words(in_folder("run"), 1, "1000"));
   run.ended_before([&] { return fs::exists(folder / "run" / "resume.json"); });
   run.ended_within(0.15);
-  run.send(SIGHUP);
+  run.send(SIGHUP);  // from the shell
+  run.send(SIGHUP);  // from the system
   EXPECT_EQ(run.code(), 130);
   EXPECT_EQ(checkpoints_below(folder / "run").size(), 1u);
 }
@@ -171,12 +174,16 @@ TEST_F(ResumeCli, WhatAnOlderRunLeftIsGone) {
   const std::string run = joined(words(in_folder("run"), 1, "0"));
   ASSERT_EQ(call(run).code, 0);
   fs::create_directories(folder / "run" / "seed_77");
-  for (const char* file : {"report.html", "seed_77/particles.h5", "mine.txt"})
+  fs::create_directories(folder / "run" / "pictures");
+  for (const char* file :
+       {"report.html", "pictures/pile.png", "pictures/mine.jpg", "seed_77/particles.h5", "mine.txt"})
     std::ofstream(folder / "run" / file) << "old";
   EXPECT_EQ(call(run + " --force").code, 0);
   EXPECT_FALSE(fs::exists(folder / "run" / "report.html"));
   EXPECT_FALSE(fs::exists(folder / "run" / "seed_77"));
-  EXPECT_TRUE(fs::exists(folder / "run" / "mine.txt")) << "is not a run's";
+  EXPECT_FALSE(fs::exists(folder / "run" / "pictures/pile.png"));
+  for (const char* mine : {"mine.txt", "pictures/mine.jpg"})
+    EXPECT_TRUE(fs::exists(folder / "run" / mine)) << mine << " is not a run's";
 }
 
 TEST_F(ResumeCli, DamagedCheckpointsArePassedOver) {
