@@ -13,7 +13,8 @@ namespace {
 
 // What every command has that writes into a folder.
 void add_force_flag(CLI::App* app, bool& force) {
-  app->add_flag("--force", force, "Write into --out even if it holds something");
+  app->add_flag("--force", force,
+                "Write into --out even if it holds something; what an older run left there is replaced");
 }
 
 // What every command has that brings runs into a store.
