@@ -156,9 +156,9 @@ int run_diagnose(const DiagnoseOptions& options) {
   }
   const fs::path out = options.out.empty() ? free_run_folder(loaded.model.name) : options.out;
   if (!prepare_folder(out, options.force)) return kBadInput;
-  const std::vector<std::string> missing = scree::write_diagnosis(origin, outcome, out);
   for (const std::string& line : scree::diagnosis_in_words(outcome)) fmt::print("{}\n", line);
   for (const std::string& note : outcome.notes) fmt::print("note: {}\n", note);
+  const std::vector<std::string> missing = scree::write_diagnosis(origin, outcome, out);
   write_patches(session, loaded.model, outcome, out);
   return tell_report(out, missing);
 }

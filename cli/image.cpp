@@ -245,12 +245,14 @@ bool may_begin(const ImageOptions& options, std::optional<scree::Scenario>& scen
 }
 
 // What an older analysis has left, with --force, and this one may not write anew.
-void forget_older(const fs::path& out) {
+void forget_older(const fs::path& out, const std::vector<fs::path>& photos) {
   std::error_code ignored;
   if (!fs::exists(out / "grains.csv", ignored)) return;
   for (const char* file : {"bias.csv", "bias.svg", "effects.yaml"}) fs::remove(out / file, ignored);
   for (const auto& entry : fs::directory_iterator(out, ignored)) {
     const std::string name = entry.path().filename().string();
+    const auto same = [&](const fs::path& photo) { return fs::equivalent(entry.path(), photo, ignored); };
+    if (std::any_of(photos.begin(), photos.end(), same)) continue;
     if ((name.starts_with("overlay_") && name.ends_with(".jpg")) ||
         (name.starts_with("passing-") && name.ends_with(".svg")))
       fs::remove(entry.path(), ignored);
@@ -308,7 +310,7 @@ int run_image(const ImageOptions& options) {
     if (const int code = dataset->check(); code != kOk) return code;
   }
   if (!prepare_folder(out, options.force)) return kBadInput;
-  forget_older(out);
+  forget_older(out, options.photos);
   for (std::size_t i = 0; i < overlays.size(); ++i) {
     report.overlays.push_back(out / ("overlay_" + report.photos[i].name + ".jpg"));
     scree::write_picture(report.overlays.back(), overlays[i]);

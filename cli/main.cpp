@@ -11,8 +11,8 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
-#include <iostream>
 #include <new>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -66,7 +66,7 @@ void make_streams_safe() {
     return say_if_possible(STDERR_FILENO, text, size);
   };
   if (FILE* safe = fopencookie(nullptr, "w", {nullptr, say, nullptr, nullptr})) {
-    setvbuf(safe, nullptr, isatty(STDOUT_FILENO) != 0 ? _IOLBF : _IOFBF, BUFSIZ);
+    setvbuf(safe, nullptr, _IOLBF, BUFSIZ);
     stdout = safe;
   }
   if (FILE* safe = fopencookie(nullptr, "w", {nullptr, tell, nullptr, nullptr})) {
@@ -78,9 +78,6 @@ void make_streams_safe() {
 
 // A code of success stands only if all that was said on stdout arrived, or its reader had enough of it.
 int with_all_said(int code) {
-  errno = 0;
-  std::cout.flush();
-  if (!std::cout && stdout_error == 0) stdout_error = errno != 0 ? errno : EIO;
   errno = 0;
   if (std::fflush(stdout) != 0 && stdout_error == 0) stdout_error = errno;
   if (stdout_error == 0 || stdout_error == EPIPE) return code;
@@ -163,7 +160,12 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return with_all_said(app.exit(error));
+    if (error.get_exit_code() == 0) {  // --help, --version
+      std::ostringstream text;
+      const int code = app.exit(error, text, text);
+      fmt::print("{}", text.str());
+      return with_all_said(code);
+    }
     const bool names_one = argc > 1 && argv[1][0] != '-';
     if (names_one && app.get_subcommands().empty()) {
       std::vector<std::string> names;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "cli/ensemble/exit_code.h"
+#include "sim/io/text_file.h"
 #include "sim/material/input_bytes.h"
 
 namespace fs = std::filesystem;
@@ -32,34 +33,58 @@ bool may_fill(const fs::path& folder, bool force) {
   return false;
 }
 
-bool may_write(const fs::path& file) {
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+namespace {
+
+// Why a file cannot be written; empty: it can.
+std::string why_not_written(const fs::path& file) {
   std::error_code none;
-  const bool there = fs::is_directory(folder, none), is_there = fs::exists(file, none);
-  const bool is_folder = fs::is_directory(file, none), other = is_there && !fs::is_regular_file(file, none);
-  const bool may = access((is_there ? file : folder).c_str(), W_OK) == 0;
-  const std::string name = file.string();
-  const bool odd = std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20; });
   // /dev/stdout and its like name what a shell has opened, by the process.
-  const bool opened = fs::absolute(fs::is_symlink(file, none) ? fs::read_symlink(file, none) : file)
-                          .string()
-                          .starts_with("/proc/");
-  if (there && !other && may && !odd && !opened) return true;
-  fmt::print(stderr, "{}: cannot be written: {}\n", scree::one_line(name),
-             odd               ? "its name has a control character"
-             : is_folder       ? "it is a folder"
-             : other || opened ? "it is there and no file"
-             : !there          ? "its folder is not there"
-                               : "no permission");
+  fs::path link = fs::absolute(file, none);
+  for (int links = 0; links < 40; ++links) {
+    if (fs::weakly_canonical(link.parent_path(), none).string().starts_with("/proc/"))
+      return "it is there and no file";
+    if (!fs::is_symlink(link, none)) break;
+    link = link.parent_path() / fs::read_symlink(link, none);
+  }
+  fs::path place;
+  try {
+    place = scree::linked_file(file);
+  } catch (const std::runtime_error&) {
+    return "its links lead in a circle";
+  }
+  const fs::path folder = place.has_parent_path() ? place.parent_path() : fs::path(".");
+  const bool is_there = fs::exists(place, none);
+  if (fs::is_directory(place, none)) return "it is a folder";
+  if (is_there && !fs::is_regular_file(place, none)) return "it is there and no file";
+  if (!fs::is_directory(folder, none)) return "its folder is not there";
+  if (access((is_there ? place : folder).c_str(), W_OK) != 0) return "no permission";
+  return {};
+}
+
+}  // namespace
+
+bool well_named(const fs::path& file) {
+  const std::string name = file.string();
+  if (std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20; })) return true;
+  fmt::print(stderr, "{}: cannot be written: its name has a control character\n", scree::one_line(name));
+  return false;
+}
+
+bool may_write(const fs::path& file) {
+  if (!well_named(file)) return false;
+  const std::string why = why_not_written(file);
+  if (why.empty()) return true;
+  fmt::print(stderr, "{}: cannot be written: {}\n", file.string(), why);
   return false;
 }
 
 bool may_replace(const fs::path& file, const std::vector<fs::path>& in_use) {
   if (!may_write(file)) return false;
   std::error_code none;
+  const auto place = [&](const fs::path& of) { return fs::weakly_canonical(fs::absolute(of), none); };
   const auto same = [&](const fs::path& other) {
-    return !other.empty() && (fs::equivalent(file, other, none) ||
-                              fs::weakly_canonical(file, none) == fs::weakly_canonical(other, none));
+    return !other.empty() &&
+           (fs::equivalent(file, other, none) || (!place(other).empty() && place(file) == place(other)));
   };
   if (std::none_of(in_use.begin(), in_use.end(), same)) return true;
   fmt::print(stderr, "{}: is used by this very command; write to another file\n", file.string());

@@ -11,6 +11,9 @@ std::filesystem::path free_run_folder(const std::string& name);
 /// message if not. What is refused here is not refused after hours of work.
 bool may_fill(const std::filesystem::path& folder, bool force);
 
+/// Whether the name is one that messages and other programs can repeat; a message if not.
+bool well_named(const std::filesystem::path& file);
+
 /// Whether the folder of a file is there, the file is no folder, and it may be written; a message if not.
 bool may_write(const std::filesystem::path& file);
 

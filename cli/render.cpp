@@ -132,7 +132,7 @@ int run_render(const RenderOptions& options) {
     }
   const fs::path folder = options.out.has_parent_path() ? options.out.parent_path() : ".";
   if (std::error_code none; !fs::exists(folder, none)) {
-    if (!may_fill(folder, true)) return kBadInput;
+    if (!well_named(options.out) || !may_fill(folder, true)) return kBadInput;
   } else if (!may_write(options.out) || !may_write(truth)) {
     return kBadInput;
   }
@@ -154,7 +154,7 @@ int run_render(const RenderOptions& options) {
     fmt::print(stderr, "scree: {}\n", error.what());
     return kBadInput;
   }
-  if (!prepare_folder(folder, true)) return kBadInput;
+  if (!prepare_folder(folder, true) || !may_write(options.out) || !may_write(truth)) return kBadInput;
   scree::write_picture(options.out, made.picture);
   scree::write_text_file(truth, scree::truth_csv(made.truth));
   std::string chi;

@@ -147,8 +147,12 @@ void simulate(const scree::Scenario& scenario, SeedRun& run, const SeedSettings&
     };
     if (settings.keep_pile && !outcome.interrupted)
       checkpoints.keep_pile(settings.pile, outcome.simulated_seconds, write);
-    if (checkpoints.on() && settings.keep_finished && !outcome.interrupted)
-      checkpoints.finish(outcome.simulated_seconds, write);
+    try {
+      if (checkpoints.on() && settings.keep_finished && !outcome.interrupted)
+        checkpoints.finish(outcome.simulated_seconds, write);
+    } catch (const std::exception& error) {  // what was to save time, should the rest fail
+      display.say(fmt::format("seed {}: {}", run.seed, error.what()));
+    }
   } catch (const std::exception& error) {
     run.failure = error.what();  // of a file; the pile itself is good
   }

@@ -123,7 +123,8 @@ int run_twin(const TwinOptions& options) {
   fs::path out = options.out.empty() ? free_run_folder("twin") : options.out;
   if (!out.has_filename()) out = out.parent_path();  // measured/
   const bool by_dots = out.filename() == "." || out.filename() == "..";
-  const std::string name = by_dots ? fs::canonical(out).string() : out.string();
+  const std::string name =
+      by_dots ? fs::weakly_canonical(fs::absolute(out) / "").parent_path().string() : out.string();
   const fs::path answer = options.answer.empty() ? fs::path(name + ".answer.json") : options.answer;
   if (!may_seal(answer, out, options.force)) return kBadInput;
   const bool was_there = fs::exists(out);

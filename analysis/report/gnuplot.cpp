@@ -88,19 +88,20 @@ void run_gnuplot(const std::string& script, const std::filesystem::path& output)
   const bool cut_off = status == 0 && std::filesystem::exists(part, error);
   std::filesystem::remove(part, error);
   if (cut_off) fail_to_write(output, "the picture is not whole; is the disk full?");
-  std::filesystem::remove(place, error);  // of other numbers
   std::ifstream in(scratch.path() / "messages.txt");
   std::string words{std::istreambuf_iterator<char>(in), {}};
   for (char& c : words)
     if (c == '\n') c = ' ';
   throw GnuplotFailed(
-      fmt::format("gnuplot failed on {} (exit status {}): {}", output.string(), status, words));
+      output, fmt::format("gnuplot failed on {} (exit status {}): {}", output.string(), status, words));
 }
 
 void add_picture(std::vector<Picture>& pictures, const std::function<std::optional<Picture>()>& draw) {
   try {
     if (std::optional<Picture> drawn = draw()) pictures.push_back(std::move(*drawn));
   } catch (const GnuplotFailed& failed) {
+    std::error_code ignored;
+    std::filesystem::remove(failed.picture, ignored);  // one of an older report, of other numbers
     pictures.push_back({"", "", "", failed.what()});
   }
 }

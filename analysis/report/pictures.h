@@ -38,9 +38,10 @@ std::vector<Picture> draw_charts(const RunResult& result, const SceneFacts& scen
                                  const std::filesystem::path& folder);
 
 /// Gnuplot ran and refused a picture.
-class GnuplotFailed : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
+struct GnuplotFailed : std::runtime_error {
+  GnuplotFailed(std::filesystem::path refused, const std::string& words)
+      : std::runtime_error(words), picture(std::move(refused)) {}
+  std::filesystem::path picture;
 };
 
 /// Runs a gnuplot script that draws one picture; `output` is set here. Throws std::runtime_error with the

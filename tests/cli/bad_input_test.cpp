@@ -68,8 +68,9 @@ std::vector<Case> read_cases(const fs::path& file) {
 /// Everything below a folder with its size.
 std::map<std::string, std::uintmax_t> content_of(const fs::path& folder) {
   std::map<std::string, std::uintmax_t> content;
+  std::error_code none;  // of links that lead in a circle
   for (const auto& entry : fs::recursive_directory_iterator(folder))
-    content[fs::relative(entry.path(), folder)] = entry.is_regular_file() ? entry.file_size() : 0;
+    content[entry.path().lexically_relative(folder)] = entry.is_regular_file(none) ? entry.file_size() : 0;
   return content;
 }
 
