@@ -331,13 +331,15 @@ TEST_F(PictureFile, OfNoKnownGrainNoEffectsAreMade) {
   const std::string command = "image " + (folder_ / "discs.png").string() + " --scale 1cm/px --truth " +
                               truth.string() + " --sections 1 --force --out " + (folder_ / "out").string();
   fs::create_directories(folder_ / "out");
-  write("out/effects.yaml", "of an older analysis\n");
+  for (const char* older : {"grains.csv", "effects.yaml", "overlay_other.jpg", "passing-2.svg"})
+    write(std::string("out/") + older, "of an older analysis\n");
   // In the picture and not found; outside the region.
   for (const char* region : {"", " --region '20,20 380,290'"}) {
     const Called called = call(command + region);
     EXPECT_EQ(called.code, 0) << called.text;
     EXPECT_THAT(called.text, HasSubstr("note: no effects.yaml: 0 known grains are detected"));
-    EXPECT_FALSE(fs::exists(folder_ / "out/effects.yaml"));
+    for (const char* older : {"effects.yaml", "overlay_other.jpg", "passing-2.svg"})
+      EXPECT_FALSE(fs::exists(folder_ / "out" / older)) << older;
     EXPECT_THAT(slurp(folder_ / "out/report.html"),
                 AllOf(HasSubstr("too few to say anything of size"), Not(HasSubstr("effects.yaml"))));
   }
