@@ -469,9 +469,11 @@ Command render_command(CLI::App& all) {
 }
 
 Command schema_command(CLI::App& all) {
+  const auto document = std::make_shared<bool>(false);
   CLI::App* app = all.add_subcommand("schema", "Print the JSON Schema of scenario files");
+  app->add_flag("--document", *document, "Print the page on all keys instead (docs/scenarios.md)");
   app->footer("\nExample:\n  scree schema > scenario.schema.json\n");
-  return {app, run_schema, false};
+  return {app, [document] { return run_schema(*document); }, false};
 }
 
 }  // namespace

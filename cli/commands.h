@@ -130,7 +130,7 @@ int run_twin(const TwinOptions& options);
 int run_run(const RunOptions& options);
 int run_compare(const std::filesystem::path& dir, const std::vector<std::string>& cases);
 int run_validate(const std::filesystem::path& file, const std::vector<std::string>& overrides);
-int run_schema();
+int run_schema(bool document);
 int run_effects(const EffectsOptions& options);
 int run_calibrate(const CalibrateOptions& options);
 int run_predict(const PredictOptions& options);

@@ -322,4 +322,11 @@ TEST_F(Cli, ValidateAndSchema) {
   EXPECT_TRUE(nlohmann::json::parse(schema.text).contains("properties"));
 }
 
+TEST_F(Cli, ThePageOnKeysIsThatOfTheProgram) {
+  const Called page = call("schema --document");
+  EXPECT_EQ(page.code, 0);
+  EXPECT_EQ(page.text, slurp(SCREE_SOURCE_DIR "/docs/scenarios.md"))
+      << "build/release/scree schema --document > docs/scenarios.md";
+}
+
 }  // namespace
