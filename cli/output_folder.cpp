@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "cli/ensemble/exit_code.h"
-#include "sim/io/text_file.h"
 #include "sim/material/input_bytes.h"
 
 namespace fs = std::filesystem;
@@ -38,21 +37,16 @@ namespace {
 // Why a file cannot be written; empty: it can.
 std::string why_not_written(const fs::path& file) {
   std::error_code none;
-  // /dev/stdout and its like name what a shell has opened, by the process.
-  fs::path link = fs::absolute(file, none);
-  for (int links = 0; links < 40; ++links) {
-    if (fs::weakly_canonical(link.parent_path(), none).string().starts_with("/proc/"))
+  fs::path place = fs::absolute(file, none);
+  for (int links = 0;; ++links) {
+    // /dev/stdout and its like name what a shell has opened, by the process.
+    if (fs::weakly_canonical(place.parent_path(), none).string().starts_with("/proc/"))
       return "it is there and no file";
-    if (!fs::is_symlink(link, none)) break;
-    link = link.parent_path() / fs::read_symlink(link, none);
+    if (!fs::is_symlink(place, none)) break;
+    if (links == 40) return "its links lead in a circle";
+    place = place.parent_path() / fs::read_symlink(place, none);
   }
-  fs::path place;
-  try {
-    place = scree::linked_file(file);
-  } catch (const std::runtime_error&) {
-    return "its links lead in a circle";
-  }
-  const fs::path folder = place.has_parent_path() ? place.parent_path() : fs::path(".");
+  const fs::path folder = place.parent_path();
   const bool is_there = fs::exists(place, none);
   if (fs::is_directory(place, none)) return "it is a folder";
   if (is_there && !fs::is_regular_file(place, none)) return "it is there and no file";
