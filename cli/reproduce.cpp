@@ -99,7 +99,9 @@ int run_reproduce(const ReproduceOptions& options) {
     scree::write_sweep_csv(sweep, points, options.csv);
     fmt::print("table: {}\n", options.csv.string());
   }
-  for (const std::string& line : scree::reproduction_in_words(cases, trends)) fmt::print("{}\n", line);
+  const scree::ReproductionWords words = scree::reproduction_in_words(cases, trends);
+  for (const auto* lines : {&words.runs, &words.trends, &words.apart, &words.counts})
+    for (const std::string& line : *lines) fmt::print("{}\n", line);
   if (interrupted) {
     fmt::print(stderr, "interrupted; the same command goes on from here\n");
     return kInterrupted;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/report/profile_chart.h"
 #include "analysis/results/finished_runs.h"
 #include "analysis/results/outputs.h"
 #include "analysis/statistics/ordered_trend.h"
@@ -23,30 +24,16 @@ struct CaseResult {
 
 /// Whether rock is fine at the crest and coarse at the toe of a case with six sections.
 struct SegregationSigns {
-  std::string case_name;
+  std::string case_name, title;
   MeanStd crest, toe;  ///< chi of S1 and S6
   double p_crest = 0,
-         p_toe = 0;  ///< one-sided: of chi(S1) < 0, of chi(S6) > 0 (p_of_sign); NaN with one seed
-  int as_expected = 0, signs = 0;  ///< of the two signs of each seed
-  MeanStd zero;                    ///< x/L where chi changes sign, of the seeds in which it does once
+         p_toe = 0;     ///< one-sided: of chi(S1) < 0, of chi(S6) > 0 (p_of_sign); NaN with one seed
+  int as_expected = 0;  ///< seeds with both signs
+  MeanStd zero;         ///< x/L where chi changes sign, of the seeds in which it does once
   std::optional<double> printed_zero;
 };
 /// Those of the cases that have runs with six sections.
 std::vector<SegregationSigns> segregation_signs(const std::vector<CaseResult>& cases);
-
-/// How a number of a pile changes with the velocity of the blade, over all seeds of all cases of push
-/// dumping.
-struct VelocityTrend {
-  PileValue value;
-  std::string first, last;  ///< cases of the slowest and the fastest blade
-  std::size_t runs = 0;
-  Slope here;                ///< per m/s
-  JonckheereTerpstra order;  ///< groups by velocity
-  double printed_slope = 0;  ///< least squares over PFC3D's printed means; NaN without two
-  std::size_t printed_cases = 0;
-};
-/// Of chi and the D50 ratio at the crest; none unless there are three velocities.
-std::vector<VelocityTrend> velocity_trends(const std::vector<CaseResult>& cases);
 
 /// A difference that the thesis prints between two cases: `quantity` of `case_name` less that of `against`.
 struct Trend {
@@ -65,10 +52,31 @@ enum class TrendVerdict {
                ///< interval
   other_size,  ///< beyond the scatter, in the printed direction, of another size
   opposite,    ///< beyond the scatter, in the other direction
-  undecided,   ///< seeds alone may differ so much
+  undecided,   ///< seeds alone may differ so much, and the printed size is within the interval
+  not_seen,    ///< seeds alone may differ so much, and the printed size lies outside the interval
   within,      ///< of a bound: the whole interval lies within it
   beyond,      ///< of a bound: the whole interval lies beyond it
 };
+
+/// How a number of a pile changes with the velocity of the blade, over all seeds of all cases of push
+/// dumping.
+struct VelocityTrend {
+  PileValue value;
+  std::string first, last;  ///< cases of the slowest and the fastest blade
+  std::size_t runs = 0;
+  Slope here;                                      ///< per m/s
+  JonckheereTerpstra order;                        ///< groups by velocity
+  std::vector<ChartSeries::Point> means, printed;  ///< over velocity in m/s: of seeds, and PFC3D's
+  double printed_slope = 0;  ///< least squares over PFC3D's printed means; NaN without two
+  TrendVerdict verdict = TrendVerdict::unknown;  ///< of the printed slope
+};
+/// Of chi and the D50 ratio at the crest; none unless there are three velocities.
+std::vector<VelocityTrend> velocity_trends(const std::vector<CaseResult>& cases);
+
+const char* in_words(TrendVerdict verdict);
+
+/// What a difference with its interval and its p says of a printed one that is no bound.
+TrendVerdict judged(double difference, double low, double high, double p, double printed);
 
 /// A printed difference and ours.
 struct TrendComparison {
@@ -90,8 +98,15 @@ std::vector<TrendComparison> compare_trends(const std::vector<CaseResult>& cases
                                             const std::vector<Trend>& trends);
 
 /// What agrees and what does not, a line each.
-std::vector<std::string> reproduction_in_words(const std::vector<CaseResult>& cases,
-                                               const std::vector<TrendComparison>& trends);
+struct ReproductionWords {
+  std::vector<std::string> runs;    ///< what limits the comparison: runs that are missing, other piles
+  int judged = 0, agreeing = 0;     ///< printed values and bounds
+  std::vector<std::string> counts;  ///< how many printed values and differences agree
+  std::vector<std::string> apart;   ///< each printed value that does not
+  std::vector<std::string> trends;  ///< signs, and the velocity of the blade
+};
+ReproductionWords reproduction_in_words(const std::vector<CaseResult>& cases,
+                                        const std::vector<TrendComparison>& trends);
 
 /// Writes folder/report.html with its figures, and these in folder/pictures. Gives gnuplot's words on those
 /// that it refused. Throws std::runtime_error when gnuplot is missing or a file cannot be written.

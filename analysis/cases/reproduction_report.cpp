@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
+#include <iterator>
 
 #include "analysis/cases/reproduction.h"
-#include "analysis/report/profile_chart.h"
+#include "analysis/cases/reproduction_figures.h"
 #include "analysis/report/report_page.h"
 #include "analysis/report/report_text.h"
 #include "analysis/results/outputs.h"
@@ -14,167 +14,61 @@
 namespace scree {
 namespace {
 
-// A figure of the thesis: a quantity along the slope, of several cases.
-struct FigureSpec {
-  const char *figure, *file, *title;
-  const char *quantity, *label;
-  int sections;
-  int dumps;  // after which the pile is looked at; 0: at the end
-  std::vector<const char*> cases;
-};
-
-const std::vector<FigureSpec>& figure_specs() {
-  static const char* const kChi = "segregation degree χ";
-  static const char* const kD50 = "D50 over that as dumped";
-  static const std::vector<FigureSpec> specs{
-      {"5.8", "lab_d10", "Laboratory, D10 of the surface cells", "d10", "D10 (m)", 3, 0, {"lab_segregation"}},
-      {"5.9", "lab_d50", "Laboratory, D50 of the surface cells", "d50", "D50 (m)", 3, 0, {"lab_segregation"}},
-      {"5.9", "lab_d80", "Laboratory, D80 of the surface cells", "d80", "D80 (m)", 3, 0, {"lab_segregation"}},
-      {"5.10", "lab_chi", "Laboratory, segregation degree", "chi", kChi, 3, 0, {"lab_segregation"}},
-      {"5.11", "cm_d50", "Canadian Malartic, D50, three sections", "d50", "D50 (m)", 3, 3, {"c1"}},
-      {"5.12", "cm_chi", "Canadian Malartic, three sections", "chi", kChi, 3, 3, {"c1"}},
-      {"5.12", "cm_chi6", "Canadian Malartic, six sections", "chi", kChi, 6, 0, {"c1"}},
-      {"5.13", "qb_d50", "Quebrada Blanca, D50, nine sections", "d50", "D50 (m)", 9, 0, {"a3"}},
-      {"5.14", "qb_d80", "Quebrada Blanca, D80, nine sections", "d80", "D80 (m)", 9, 0, {"a3"}},
-      {"6.5", "height_chi", "Height of the bench", "chi", kChi, 6, 0, {"a1", "a2", "a3", "a4"}},
-      {"6.5", "height_d50", "Height of the bench", "d50_rel", kD50, 6, 0, {"a1", "a2", "a3", "a4"}},
-      {"6.6", "grading_chi", "Grading of the rock", "chi", kChi, 6, 0, {"a1", "c1"}},
-      {"6.6", "grading_d50", "Grading of the rock", "d50_rel", kD50, 6, 0, {"a1", "c1"}},
-      {"6.7", "payload_chi", "Payload", "chi", kChi, 6, 0, {"a1", "b1"}},
-      {"6.7", "payload_d50", "Payload", "d50_rel", kD50, 6, 0, {"a1", "b1"}},
-      {"6.8", "method_chi", "End dumping and push dumping", "chi", kChi, 6, 0, {"a1", "d2"}},
-      {"6.8", "method_d50", "End dumping and push dumping", "d50_rel", kD50, 6, 0, {"a1", "d2"}},
-      {"6.9", "push_chi", "Velocity of the blade", "chi", kChi, 6, 0, {"d1", "d2", "d3", "d4", "d5", "d6"}},
-      {"6.9",
-       "push_d50",
-       "Velocity of the blade",
-       "d50_rel",
-       kD50,
-       6,
-       0,
-       {"d1", "d2", "d3", "d4", "d5", "d6"}},
-      {"6.10",
-       "push_speed",
-       "Mean speed of moving rock",
-       "flow_speed",
-       "speed (m/s)",
-       6,
-       0,
-       {"a1", "d1", "d6"}},
-      {"6.12",
-       "lateral_chi",
-       "Distance of the dump points",
-       "chi",
-       kChi,
-       6,
-       0,
-       {"a1", "lateral_s4", "lateral_s8", "lateral_s12"}},
-      {"6.13",
-       "lateral_std",
-       "Deviation of χ across the slope",
-       "lateral_chi_std",
-       "deviation of χ over strips",
-       6,
-       0,
-       {"a1", "lateral_s4", "lateral_s8", "lateral_s12"}},
-  };
-  return specs;
+// Whether fine rock lies at the crest and coarse rock at the toe, in how many cases.
+std::string signs_sentence(const std::vector<CaseResult>& cases) {
+  int all = 0, as_expected = 0;
+  for (const SegregationSigns& each : segregation_signs(cases))
+    ++all, as_expected += each.as_expected == each.crest.n;
+  if (all == 0) return "";
+  return fmt::format(" In every seed of {} the crest is finer than the rock as dumped and the toe coarser.",
+                     as_expected == all ? counted_text(static_cast<std::size_t>(all), "case") +
+                                              ", all that have six sections,"
+                                        : fmt::format("{} of {} cases", as_expected, all));
 }
 
-double x_over_l(int section, int sections) {
-  return (2.0 * section - 1) / (2.0 * sections);
+// The answer: how much of what is printed comes out again.
+std::string lead(const ReproductionWords& words, const std::vector<CaseResult>& cases) {
+  std::string items;
+  for (const std::string& line : words.counts) items += fmt::format("<li>{}</li>\n", html_escaped(line));
+  return fmt::format(
+      "<p class=\"lead\"><strong>Of {} printed values and bounds {} agree</strong> within two standard "
+      "deviations.{}</p>\n<ul>\n{}</ul>\n",
+      words.judged, words.agreeing, html_escaped(signs_sentence(cases)), items);
 }
 
-// S4 -> 4, bottom -> 3; 0 for none.
-int section_number(const std::string& name) {
-  if (name == "top") return 1;
-  if (name == "middle") return 2;
-  if (name == "bottom") return 3;
-  return name.size() == 2 && name[0] == 'S' ? name[1] - '0' : 0;
-}
-
-ChartSeries ours(const CaseResult& result, const FigureSpec& spec, int colour) {
-  ChartSeries series{result.name, ChartSeries::Kind::ours, colour, {}};
-  static const char* const kCells[] = {"top", "middle", "bottom"};
-  for (int k = 1; k <= spec.sections; ++k) {
-    const PileValue what{spec.quantity, spec.sections == 3 ? kCells[k - 1] : fmt::format("S{}", k),
-                         spec.sections, spec.dumps};
-    const MeanStd both =
-        spread_of(result.runs.seeds, [&](const Outputs& seed) { return output_for(what, seed); });
-    if (both.n > 0) series.points.push_back({x_over_l(k, spec.sections), both.mean, both.std});
-  }
-  return series;
-}
-
-ChartSeries printed(const CaseResult& result, const FigureSpec& spec, ChartSeries::Kind kind, int colour) {
-  ChartSeries series{result.name, kind, colour, {}};
-  for (const Comparison& row : result.comparison) {
-    const ReferenceValue& r = row.reference;
-    if (r.quantity != spec.quantity || meaning_of(r) != Meaning::value || section_count(r) != spec.sections)
-      continue;
-    if ((r.kind == "measured") != (kind == ChartSeries::Kind::measured)) continue;
-    if (const int k = section_number(r.section); k > 0)
-      series.points.push_back({x_over_l(k, spec.sections), r.value, r.std.value_or(std::nan(""))});
-  }
-  std::sort(series.points.begin(), series.points.end(),
-            [](const auto& a, const auto& b) { return a.x < b.x; });
-  return series;
-}
-
-std::vector<Picture> draw_figures(const std::vector<CaseResult>& cases, const std::filesystem::path& folder) {
-  std::vector<Picture> pictures;
-  for (const FigureSpec& spec : figure_specs()) {
-    ProfileChart chart{spec.title,
-                       std::string_view(spec.file).starts_with("lab")
-                           ? "place on the cone (0 top, 1 bottom)"
-                           : "place along the slope x/L (0 crest, 1 toe)",
-                       spec.label,
-                       std::string_view(spec.quantity) == "chi",
-                       {}};
-    int colour = 0;
-    for (const char* name : spec.cases) {
-      const auto found =
-          std::find_if(cases.begin(), cases.end(), [&](const CaseResult& each) { return each.name == name; });
-      if (found != cases.end()) {
-        ChartSeries here = ours(*found, spec, colour);
-        if (!here.points.empty()) {
-          chart.series.push_back(std::move(here));
-          for (const auto kind : {ChartSeries::Kind::pfc3d, ChartSeries::Kind::measured})
-            if (ChartSeries theirs = printed(*found, spec, kind, colour); !theirs.points.empty())
-              chart.series.push_back(std::move(theirs));
-        }
-      }
-      ++colour;
-    }
-    if (chart.series.empty()) continue;
-    const auto file = folder / fmt::format("{}.svg", spec.file);
-    add_picture(pictures, [&] {
-      draw(chart, file);
-      return Picture{
-          fmt::format("{}: {} (figure {} of the thesis)", spec.title, spec.label, spec.figure), file,
-          "Dots with a line: mean and standard deviation of the seeds simulated here. Squares: PFC3D; "
-          "triangles: measured; both where the thesis prints numbers." +
-              std::string(spec.dumps > 0 ? fmt::format(" Simulated after load {}.", spec.dumps) : "")};
-    });
-  }
-  return pictures;
-}
-
-std::string limits(const std::vector<CaseResult>& cases) {
+std::string limits(const ReproductionWords& words, const std::vector<CaseResult>& cases) {
   double overlap = 0, lost = 0;
   for (const CaseResult& each : cases)
     overlap = std::max(overlap, each.largest_overlap), lost += each.lost_mass;
   std::string items;
+  for (const std::string& line : words.runs) items += fmt::format("<li>{}</li>\n", html_escaped(line));
   if (overlap > 0.1)
     items += fmt::format(
         "<li>The largest overlap was {:.0f} % of the smaller radius: small spheres under large blocks, at "
-        "the "
-        "thesis's modulus.</li>\n",
+        "the thesis's modulus.</li>\n",
         100 * overlap);
   if (lost > 0)
     items += fmt::format("<li>{} t in all runs together left the model.</li>\n", number_text(lost));
   if (items.empty()) return items;
   return "<div class=\"notes\" role=\"note\"><strong>Read with care</strong><ul>\n" + items + "</ul></div>\n";
+}
+
+std::string not_agreeing(const std::vector<CaseResult>& cases) {
+  std::vector<Comparison> apart;
+  for (const CaseResult& each : cases)
+    std::copy_if(each.comparison.begin(), each.comparison.end(), std::back_inserter(apart),
+                 [](const Comparison& row) { return verdict(row) == Verdict::differs; });
+  if (apart.empty()) return "";
+  return "<h2>What does not agree</h2>\n" + comparison_explained() + comparison_table(apart);
+}
+
+// Links to the cases below.
+std::string contents(const std::vector<CaseResult>& cases) {
+  std::string links;
+  for (const CaseResult& each : cases)
+    if (!each.runs.seeds.empty())
+      links += fmt::format("{0}<a href=\"#{1}\">{1}</a>", links.empty() ? "" : ", ", html_escaped(each.name));
+  return links.empty() ? links : fmt::format("<p>{}.</p>\n", links);
 }
 
 std::string signs_table(const std::vector<CaseResult>& cases) {
@@ -184,12 +78,13 @@ std::string signs_table(const std::vector<CaseResult>& cases) {
       return chi.n == 1 ? std::string("one seed") : html_escaped(p_text(value));
     };
     rows += fmt::format(
-        "<tr><td class=\"word\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{} of "
-        "{}</td><td>{}</td>"
-        "<td>{}</td></tr>\n",
-        html_escaped(each.case_name), value_cell("chi", each.crest, ""), p(each.crest, each.p_crest),
-        value_cell("chi", each.toe, ""), p(each.toe, each.p_toe), each.as_expected, each.signs,
-        value_cell("chi", each.zero, ""), each.printed_zero ? number_text(*each.printed_zero, 2) : "–");
+        "<tr><td class=\"word\">{}<small>{}</small></td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{} "
+        "of "
+        "{}</td><td>{}</td><td>{}</td></tr>\n",
+        html_escaped(each.case_name), html_escaped(each.title), value_cell("chi", each.crest, ""),
+        p(each.crest, each.p_crest), value_cell("chi", each.toe, ""), p(each.toe, each.p_toe),
+        each.as_expected, each.crest.n, value_cell("chi", each.zero, ""),
+        each.printed_zero ? number_text(*each.printed_zero, 2) : "–");
   }
   if (rows.empty()) return rows;
   return "<h2>Fine at the crest, coarse at the toe</h2>\n<p>p is the probability that seeds alone make so "
@@ -198,9 +93,27 @@ std::string signs_table(const std::vector<CaseResult>& cases) {
          "1 "
          "degrees of freedom).</p>\n<div class=\"wide\"><table><thead><tr><th class=\"word\">Case</th><th>χ "
          "of "
-         "S1</th><th>p of χ &lt; 0</th><th>χ of S6</th><th>p of χ &gt; 0</th><th>signs as expected, of all "
-         "seeds</th><th>x/L where χ changes sign</th><th>printed</th></tr></thead><tbody>\n" +
+         "S1</th><th>p of χ &lt; 0</th><th>χ of S6</th><th>p of χ &gt; 0</th><th>seeds with both "
+         "signs</th><th>x/L where χ changes sign</th><th>printed</th></tr></thead><tbody>\n" +
          rows + "</tbody></table></div>\n";
+}
+
+const char* style_of(TrendVerdict verdict) {
+  switch (verdict) {
+    case TrendVerdict::agrees:
+    case TrendVerdict::within:
+      return "close";
+    case TrendVerdict::other_size:
+      return "agrees";
+    case TrendVerdict::opposite:
+    case TrendVerdict::beyond:
+    case TrendVerdict::not_seen:
+      return "differs";
+    case TrendVerdict::undecided:
+    case TrendVerdict::unknown:
+      break;
+  }
+  return "unknown";
 }
 
 std::string velocity_table(const std::vector<CaseResult>& cases) {
@@ -208,47 +121,25 @@ std::string velocity_table(const std::vector<CaseResult>& cases) {
   for (const VelocityTrend& each : velocity_trends(cases))
     rows += fmt::format(
         "<tr><td class=\"word\">{}</td><td class=\"word\">{}</td><td>{}</td><td>{}<small>{} to "
-        "{}</small></td><td>{}</td><td>{}</td><td>{}<small>{} cases</small></td></tr>\n",
+        "{}</small></td><td>{}</td><td>{}</td><td>{}<small>{} cases</small></td><td class=\"word "
+        "{}\">{}</td></tr>\n",
         html_escaped(quantity_in_words(each.value.quantity)), each.value.section, each.runs,
         decimals_text(each.here.slope, 2), decimals_text(each.here.low, 2), decimals_text(each.here.high, 2),
         html_escaped(p_text(each.here.p)), html_escaped(p_text(each.order.p)),
-        decimals_text(each.printed_slope, 2), each.printed_cases);
+        decimals_text(each.printed_slope, 2), each.printed.size(), style_of(each.verdict),
+        in_words(each.verdict));
   if (rows.empty()) return rows;
   return "<h2>Velocity of the blade</h2>\n<p>Least squares over all seeds of all cases of push dumping, with "
+         "the 95 % interval of the slope and p of no slope (t, n − 2 degrees of freedom); p of no order by "
          "the "
-         "95 % interval of the slope and p of no slope (t, n − 2 degrees of freedom); p of no order by the "
-         "test "
-         "of Jonckheere and Terpstra (normal approximation with ties). Both are two-sided. PFC3D's slope is "
-         "that "
-         "of its printed means.</p>\n<div class=\"wide\"><table><thead><tr><th "
-         "class=\"word\">Quantity</th><th "
-         "class=\"word\">Section</th><th>Runs</th><th>Slope per m/s</th><th>p of the slope</th><th>p of the "
-         "order</th><th>PFC3D's slope</th></tr></thead><tbody>\n" +
+         "test of Jonckheere and Terpstra (normal approximation with ties). Both are two-sided. PFC3D's "
+         "slope "
+         "is that of its printed means, taken as exact.</p>\n<div class=\"wide\"><table><thead><tr><th "
+         "class=\"word\">Quantity</th><th class=\"word\">Section</th><th>Runs</th><th>Slope per "
+         "m/s</th><th>p "
+         "of the slope</th><th>p of the order</th><th>PFC3D's slope</th><th "
+         "class=\"word\">Verdict</th></tr></thead><tbody>\n" +
          rows + "</tbody></table></div>\n";
-}
-
-struct TrendLook {
-  const char *style, *words;
-};
-
-TrendLook look(TrendVerdict verdict) {
-  switch (verdict) {
-    case TrendVerdict::agrees:
-      return {"close", "same direction and size"};
-    case TrendVerdict::other_size:
-      return {"agrees", "same direction, other size"};
-    case TrendVerdict::opposite:
-      return {"differs", "opposite direction"};
-    case TrendVerdict::within:
-      return {"close", "within the bound"};
-    case TrendVerdict::beyond:
-      return {"differs", "beyond the bound"};
-    case TrendVerdict::undecided:
-      return {"unknown", "not decided by these seeds"};
-    case TrendVerdict::unknown:
-      break;
-  }
-  return {"unknown", "not judged: two seeds of both are needed"};
 }
 
 std::string trends_table(const std::vector<TrendComparison>& trends) {
@@ -277,8 +168,8 @@ std::string trends_table(const std::vector<TrendComparison>& trends) {
         "{}\">{}</td><td class=\"word\">{}</td></tr>\n",
         html_escaped(t.case_name), html_escaped(t.against), html_escaped(quantity_in_words(t.quantity)),
         html_escaped(t.section), t.bound ? "|·| ≤ " : "", text(t.difference), text(row.difference),
-        text(row.low), text(row.high), html_escaped(p_text(row.p)), look(row.verdict).style,
-        look(row.verdict).words, html_escaped(t.source));
+        text(row.low), text(row.high), html_escaped(p_text(row.p)), style_of(row.verdict),
+        in_words(row.verdict), html_escaped(t.source));
   }
   return out + "</tbody></table></div>\n";
 }
@@ -290,33 +181,21 @@ std::vector<std::string> write_reproduction(const std::vector<CaseResult>& cases
                                             const std::filesystem::path& folder) {
   const std::filesystem::path pictures = folder / "pictures";
   std::filesystem::create_directories(pictures);
-  const std::vector<std::string> words = reproduction_in_words(cases, trends);
-  const auto list = [&](const char* heading, auto&& chosen) {
-    std::string items;
-    for (const std::string& line : words)
-      if (chosen(line)) items += fmt::format("<li>{}</li>\n", html_escaped(line));
-    return items.empty() ? items : fmt::format("{}\n<ul>\n{}</ul>\n", heading, items);
-  };
-  const auto counts = [](const std::string& line) {
-    return std::isdigit(static_cast<unsigned char>(line[0])) || line.starts_with("of ");
-  };
-  const auto against = [](const std::string& line) { return line.starts_with("does not agree"); };
-  std::string body = list("<h2>What agrees and what does not</h2>", counts) +
-                     list("<h3>Not within two standard deviations</h3>", against) +
-                     list("<h3>Signs, trends, runs</h3>",
-                          [&](const std::string& line) { return !counts(line) && !against(line); }) +
-                     limits(cases) + signs_table(cases) + velocity_table(cases) + trends_table(trends);
+  const ReproductionWords words = reproduction_in_words(cases, trends);
+  std::string body = lead(words, cases) + limits(words, cases) + not_agreeing(cases);
   PageFigures shown;
-  body += shown.figures("Figures", draw_figures(cases, pictures));
-  body += "<h2>Every printed value</h2>\n";
+  body += signs_table(cases) + velocity_table(cases);
+  for (const Picture& picture : draw_velocity_trends(cases, pictures)) body += shown.figure(picture);
+  body += trends_table(trends) + shown.figures("Figures", draw_figures(cases, pictures));
+  body += "<h2>Every printed value</h2>\n" + contents(cases) + comparison_explained();
   double seconds = 0;
   std::size_t runs = 0;
   for (const CaseResult& each : cases) {
     seconds += each.runs.wall_seconds;
     runs += each.runs.seeds.size();
     if (each.runs.seeds.empty()) continue;
-    body += fmt::format("<h3>{}: {}, {} seed{}</h3>\n", html_escaped(each.name), html_escaped(each.title),
-                        each.runs.seeds.size(), each.runs.seeds.size() == 1 ? "" : "s");
+    body += fmt::format("<h3 id=\"{0}\">{0}: {1}, {2}</h3>\n", html_escaped(each.name),
+                        html_escaped(each.title), counted_text(each.runs.seeds.size(), "seed"));
     body += each.comparison.empty() ? "<p>Nothing is printed for this case alone.</p>\n"
                                     : comparison_table(each.comparison);
   }

@@ -22,7 +22,7 @@ VelocityTrend trend_of(const PileValue& value, std::vector<const CaseResult*> ca
   VelocityTrend trend;
   trend.value = value;
   std::map<double, std::vector<double>> groups;
-  std::vector<double> velocities, values, printed_velocities, printed;
+  std::vector<double> velocities, values;
   for (const CaseResult* each : cases) {
     for (const Outputs& seed : each->runs.seeds)
       if (const auto number = output_for(value, seed)) {
@@ -30,19 +30,28 @@ VelocityTrend trend_of(const PileValue& value, std::vector<const CaseResult*> ca
         velocities.push_back(*each->blade_velocity);
         values.push_back(*number);
       }
-    if (const ReferenceValue* row = printed_value(*each, value.quantity.c_str(), value.section)) {
-      printed_velocities.push_back(*each->blade_velocity);
-      printed.push_back(row->value);
-    }
+    if (const ReferenceValue* row = printed_value(*each, value.quantity.c_str(), value.section))
+      trend.printed.push_back({*each->blade_velocity, row->value, row->std.value_or(std::nan(""))});
   }
   trend.first = cases.front()->name, trend.last = cases.back()->name;
   trend.runs = values.size();
   trend.here = slope_of(velocities, values);
   std::vector<std::vector<double>> in_order;
-  for (const auto& [velocity, group] : groups) in_order.push_back(group);
+  for (const auto& [velocity, group] : groups) {
+    const MeanStd both = mean_std(group);
+    trend.means.push_back({velocity, both.mean, both.n > 1 ? both.std : std::nan("")});
+    in_order.push_back(group);
+  }
   trend.order = jonckheere_terpstra(in_order);
+  std::vector<double> printed_velocities, printed;
+  for (const auto& point : trend.printed) {
+    printed_velocities.push_back(point.x);
+    printed.push_back(point.y);
+  }
   trend.printed_slope = slope_of(printed_velocities, printed).slope;
-  trend.printed_cases = printed.size();
+  if (std::isfinite(trend.printed_slope) && std::isfinite(trend.here.p))
+    trend.verdict =
+        judged(trend.here.slope, trend.here.low, trend.here.high, trend.here.p, trend.printed_slope);
   return trend;
 }
 
@@ -52,16 +61,15 @@ std::vector<SegregationSigns> segregation_signs(const std::vector<CaseResult>& c
   std::vector<SegregationSigns> all;
   for (const CaseResult& each : cases) {
     SegregationSigns signs;
-    signs.case_name = each.name;
+    signs.case_name = each.name, signs.title = each.title;
     std::vector<double> crest, toe;
     for (const Outputs& seed : each.runs.seeds) {
       if (!seed.contains("chi_S1") || !seed.contains("chi_S6")) continue;
       crest.push_back(seed.at("chi_S1"));
       toe.push_back(seed.at("chi_S6"));
-      signs.as_expected += (crest.back() < 0) + (toe.back() > 0);
-      signs.signs += 2;
+      signs.as_expected += crest.back() < 0 && toe.back() > 0;
     }
-    if (signs.signs == 0) continue;
+    if (crest.empty()) continue;
     signs.crest = mean_std(crest), signs.toe = mean_std(toe);
     signs.p_crest = p_of_sign(signs.crest, -1), signs.p_toe = p_of_sign(signs.toe, +1);
     signs.zero = spread_of(each.runs.seeds, "chi_zero_x_over_l");

@@ -48,16 +48,39 @@ std::string in_words(const VelocityTrend& trend) {
       std::isnan(s.p) ? std::string(", no interval")
                       : fmt::format(" (95 % {:+.2f} to {:+.2f}, p {})", s.low, s.high, p_text(s.p)),
       p_text(trend.order.p),
-      trend.printed_cases > 1 ? fmt::format("; PFC3D's slope {:+.2f} ({} cases printed)", trend.printed_slope,
-                                            trend.printed_cases)
-                              : "");
+      trend.printed.size() > 1
+          ? fmt::format("; PFC3D's slope {:+.2f} ({} cases printed): {}", trend.printed_slope,
+                        trend.printed.size(), in_words(trend.verdict))
+          : "");
 }
 
 }  // namespace
 
-std::vector<std::string> reproduction_in_words(const std::vector<CaseResult>& cases,
-                                               const std::vector<TrendComparison>& trends) {
-  std::vector<std::string> lines, apart;
+const char* in_words(TrendVerdict verdict) {
+  switch (verdict) {
+    case TrendVerdict::agrees:
+      return "same direction and size";
+    case TrendVerdict::other_size:
+      return "same direction, other size";
+    case TrendVerdict::opposite:
+      return "opposite direction";
+    case TrendVerdict::within:
+      return "within the bound";
+    case TrendVerdict::beyond:
+      return "beyond the bound";
+    case TrendVerdict::not_seen:
+      return "none seen, and the printed one lies outside the interval";
+    case TrendVerdict::undecided:
+      return "not decided by these seeds";
+    case TrendVerdict::unknown:
+      break;
+  }
+  return "not judged: two seeds of both are needed";
+}
+
+ReproductionWords reproduction_in_words(const std::vector<CaseResult>& cases,
+                                        const std::vector<TrendComparison>& trends) {
+  ReproductionWords words;
   struct Count {
     const char* what;
     int judged = 0, agreeing = 0;
@@ -66,9 +89,9 @@ std::vector<std::string> reproduction_in_words(const std::vector<CaseResult>& ca
       {"values printed of PFC3D"}, {"values printed of measurements"}, {"bounds printed of PFC3D"}};
   int unjudged = 0;
   for (const CaseResult& each : cases) {
-    if (!each.runs.complete()) lines.push_back(runs_in_words(each.name, each.runs));
+    if (!each.runs.complete()) words.runs.push_back(runs_in_words(each.name, each.runs));
     for (const std::string& note : comparison_notes(each.comparison))
-      lines.push_back(fmt::format("{}: {}", each.name, note));
+      words.runs.push_back(fmt::format("{}: {}", each.name, note));
     for (const Comparison& row : each.comparison) {
       const bool value = meaning_of(row.reference) == Meaning::value;
       Count& count = counts[!value ? 2 : row.reference.kind == "measured"];
@@ -79,34 +102,37 @@ std::vector<std::string> reproduction_in_words(const std::vector<CaseResult>& ca
       if (said != Verdict::differs)
         ++count.agreeing;
       else
-        apart.push_back(
-            fmt::format("{} ({}): {} {:.3g}{}, here {:.3g}, z {:+.1f}", place(row.reference),
+        words.apart.push_back(
+            fmt::format("does not agree: {} ({}): {} {:.3g}{}, here {:.3g}, z {:+.1f}", place(row.reference),
                         kind_in_words(row.reference.kind), value ? "printed" : "bound", row.reference.value,
                         row.reference.upper ? fmt::format(" to {:.3g}", *row.reference.upper) : "",
                         row.simulated, *row.z));
     }
   }
-  for (const Count& count : counts)
+  for (const Count& count : counts) {
+    words.judged += count.judged, words.agreeing += count.agreeing;
     if (count.judged > 0)
-      lines.push_back(fmt::format("{} of {} {} agree within two standard deviations ({:.0f} %)",
-                                  count.agreeing, count.judged, count.what,
-                                  100.0 * count.agreeing / count.judged));
+      words.counts.push_back(fmt::format("{} of {} {} agree within two standard deviations ({:.0f} %)",
+                                         count.agreeing, count.judged, count.what,
+                                         100.0 * count.agreeing / count.judged));
+  }
   if (unjudged > 0)
-    lines.push_back(fmt::format("{} values are not judged: more than one seed is needed", unjudged));
-  for (std::string& line : apart) lines.push_back("does not agree: " + line);
-  for (const SegregationSigns& signs : segregation_signs(cases)) lines.push_back(in_words(signs));
-  for (const VelocityTrend& trend : velocity_trends(cases)) lines.push_back(in_words(trend));
+    words.counts.push_back(fmt::format("{} values are not judged: more than one seed is needed", unjudged));
   std::map<TrendVerdict, int> verdicts;
   for (const TrendComparison& each : trends) ++verdicts[each.verdict];
   if (!trends.empty())
-    lines.push_back(fmt::format(
+    words.counts.push_back(fmt::format(
         "of {} printed differences between cases {} agree in direction and size, {} in direction alone, {} "
-        "bounds are "
-        "kept; {} go the other way, {} bounds are passed; {} are not decided by these seeds, {} not judged",
+        "bounds are kept; {} go the other way, {} are not seen though these seeds would show them, {} "
+        "broken; {} are not decided by these seeds, {} not judged",
         trends.size(), verdicts[TrendVerdict::agrees], verdicts[TrendVerdict::other_size],
-        verdicts[TrendVerdict::within], verdicts[TrendVerdict::opposite], verdicts[TrendVerdict::beyond],
+        verdicts[TrendVerdict::within], verdicts[TrendVerdict::opposite], verdicts[TrendVerdict::not_seen],
+        counted_text(static_cast<std::size_t>(verdicts[TrendVerdict::beyond]), "bound") +
+            (verdicts[TrendVerdict::beyond] == 1 ? " is" : " are"),
         verdicts[TrendVerdict::undecided], verdicts[TrendVerdict::unknown]));
-  return lines;
+  for (const SegregationSigns& signs : segregation_signs(cases)) words.trends.push_back(in_words(signs));
+  for (const VelocityTrend& trend : velocity_trends(cases)) words.trends.push_back(in_words(trend));
+  return words;
 }
 
 }  // namespace scree

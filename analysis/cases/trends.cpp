@@ -28,15 +28,11 @@ MeanStd spread(const CaseResult& result, const Trend& trend) {
   });
 }
 
-TrendVerdict judged(const TrendComparison& c) {
+TrendVerdict verdict_of(const TrendComparison& c) {
   const double printed = c.trend.difference;
-  if (c.trend.bound) {
-    if (c.low > printed || c.high < -printed) return TrendVerdict::beyond;
-    return c.low >= -printed && c.high <= printed ? TrendVerdict::within : TrendVerdict::undecided;
-  }
-  if (c.p >= kSignificant) return TrendVerdict::undecided;
-  if (c.difference * printed < 0) return TrendVerdict::opposite;
-  return c.low <= printed && printed <= c.high ? TrendVerdict::agrees : TrendVerdict::other_size;
+  if (!c.trend.bound) return judged(c.difference, c.low, c.high, c.p, printed);
+  if (c.low > printed || c.high < -printed) return TrendVerdict::beyond;
+  return c.low >= -printed && c.high <= printed ? TrendVerdict::within : TrendVerdict::undecided;
 }
 
 TrendComparison compared(const Trend& trend, const MeanStd& a, const MeanStd& b) {
@@ -52,11 +48,18 @@ TrendComparison compared(const Trend& trend, const MeanStd& a, const MeanStd& b)
   result.difference = test.difference / scale;
   result.low = result.difference - test.t_95 * spread, result.high = result.difference + test.t_95 * spread;
   result.p = test.p;
-  result.verdict = judged(result);
+  result.verdict = verdict_of(result);
   return result;
 }
 
 }  // namespace
+
+TrendVerdict judged(double difference, double low, double high, double p, double printed) {
+  const bool inside = low <= printed && printed <= high;
+  if (!(p < kSignificant)) return inside ? TrendVerdict::undecided : TrendVerdict::not_seen;
+  if (difference * printed < 0) return TrendVerdict::opposite;
+  return inside ? TrendVerdict::agrees : TrendVerdict::other_size;
+}
 
 std::vector<Trend> read_trends(const std::filesystem::path& file) {
   CsvTable table(file,

@@ -18,8 +18,9 @@ namespace {
 constexpr std::array<const char*, 7> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                               "#e69f00", "#56b4e9", "#333333"};
 
-// Series are shifted sideways so that bars do not hide each other: by as much of x, all together at most.
-constexpr double kDodge = 0.014, kWidestDodge = 0.06;
+// Shares of the chart's width. Series are shifted sideways so that bars do not hide each other: by as much,
+// all together at most; a bound is a dash of this width.
+constexpr double kDodge = 0.014, kWidestDodge = 0.06, kDash = 0.09;
 
 struct Look {
   const char* name;
@@ -33,6 +34,10 @@ Look look(ChartSeries::Kind kind) {
       return {"PFC3D", 4, 0.9};
     case ChartSeries::Kind::measured:
       return {"measured", 8, 1.0};
+    case ChartSeries::Kind::at_least:
+      return {"PFC3D at least", 0, 0};
+    case ChartSeries::Kind::at_most:
+      return {"PFC3D at most", 0, 0};
     case ChartSeries::Kind::ours:
       break;
   }
@@ -71,7 +76,8 @@ KeyShape key_shape(const std::vector<std::string>& labels) {
 
 void draw(const ProfileChart& chart, const std::filesystem::path& file) {
   const double count = static_cast<double>(chart.series.size()), middle = 0.5 * (count - 1);
-  const double dodge = count > 1 ? std::min(kDodge, kWidestDodge / (count - 1)) : 0;
+  const double width = chart.x_range[1] - chart.x_range[0];
+  const double dodge = count > 1 ? width * std::min(kDodge, kWidestDodge / (count - 1)) : 0;
   std::set<std::string> cases;
   for (const ChartSeries& series : chart.series) cases.insert(series.name);
   std::string script, plots;
@@ -84,8 +90,16 @@ void draw(const ProfileChart& chart, const std::filesystem::path& file) {
                             std::isfinite(p.std) ? p.std : 0.0);
     script += "END\n";
     const Look shown = look(series.kind);
-    const char* colour = kColours[static_cast<std::size_t>(series.colour) % kColours.size()];
+    const char* colour =
+        series.colour < 0 ? "#777777" : kColours[static_cast<std::size_t>(series.colour) % kColours.size()];
     labels.push_back(in_key(series, cases.size() == 1));
+    if (series.kind == ChartSeries::Kind::at_least || series.kind == ChartSeries::Kind::at_most) {
+      plots += fmt::format(
+          "{}$s{} using ($1-{}):2:({}):(0) with vectors nohead lw 1.6 dt (6,3) lc rgb '{}' title {}",
+          plots.empty() ? "" : ", ", k, width * kDash / 2, width * kDash, colour,
+          gnuplot_quoted(labels.back()));
+      continue;
+    }
     if (series.kind == ChartSeries::Kind::ours)
       plots += fmt::format("{}$s{} using 1:2 with lines lc rgb '{}' lw 1.6 notitle",
                            plots.empty() ? "" : ", ", k, colour);
@@ -98,9 +112,9 @@ void draw(const ProfileChart& chart, const std::filesystem::path& file) {
   const KeyShape key = key_shape(labels);
   const int key_height = kKeyRow * key.rows, height = kPlotAndAxes + key_height;
   script += chart_terminal(kWidth, height);
-  script +=
-      fmt::format("set title {}\nset xlabel {}\nset ylabel {}\nset xrange [0:1]\n",
-                  gnuplot_quoted(chart.title), gnuplot_quoted(chart.x_label), gnuplot_quoted(chart.y_label));
+  script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\nset xrange [{}:{}]\n",
+                        gnuplot_quoted(chart.title), gnuplot_quoted(chart.x_label),
+                        gnuplot_quoted(chart.y_label), chart.x_range[0], chart.x_range[1]);
   script += fmt::format(
       "set bmargin at screen {:.4f}\nset key at screen 0.5, screen {:.4f} center top horizontal Left reverse "
       "maxcols {} samplen 1.5\n",

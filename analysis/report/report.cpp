@@ -277,7 +277,8 @@ std::vector<std::string> write_report(const RunResult& result, const std::filesy
   std::string page = failures_box(result) + lead_paragraphs(result) + notes_box(result);
   page += shown.figures("The pile", draw_pile(result, scene, pictures));
   if (!result.comparison.empty())
-    page += "<h2>Held against printed values</h2>\n" + comparison_table(result.comparison);
+    page += "<h2>Held against printed values</h2>\n" + comparison_explained() +
+            comparison_table(result.comparison);
   page += shown.figures("Charts", draw_charts(result, scene, pictures));
   page +=
       shown.figures("Inside the pile, and the flow", draw_inside_of(result, pictures)) + inside_table(result);

@@ -117,14 +117,19 @@ std::string value_cell(std::string_view quantity, const MeanStd& value, const st
   return value_cell(quantity, value.mean, value.n > 1 ? std::optional(value.std) : std::nullopt, unit);
 }
 
+std::string comparison_explained() {
+  return "<p>z is the difference over the standard deviations of both values together (for a bound, how far "
+         "it "
+         "is passed; where no deviation is printed, that of rounding): below 1 agrees closely, below 2 "
+         "agrees, "
+         "above does not agree. The source is a table of the thesis, or a line of an extract of its text (an "
+         "order, to tell values apart).</p>\n";
+}
+
 std::string comparison_table(const std::vector<Comparison>& comparison) {
   if (comparison.empty()) return "";
   std::string out =
-      "<p>z is the difference over the standard deviations of both values together (for a bound, how far it "
-      "is "
-      "passed; where no deviation is printed, that of rounding): below 1 agrees closely, below 2 agrees, "
-      "above does "
-      "not agree.</p>\n<div class=\"wide\"><table><thead><tr><th "
+      "<div class=\"wide\"><table><thead><tr><th "
       "class=\"word\">Quantity</th>"
       "<th class=\"word\">Section</th><th class=\"word\">Printed "
       "by</th><th>Printed</th><th>Here</th><th>z</th>"

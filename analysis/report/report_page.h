@@ -21,6 +21,8 @@ std::string value_cell(std::string_view quantity, double value, std::optional<do
 /// A mean with its deviation, if there is one; a dash for a mean of nothing.
 std::string value_cell(std::string_view quantity, const MeanStd& value, const std::string& unit);
 
+/// A paragraph on what z and the sources of comparison_table() are.
+std::string comparison_explained();
 /// Printed values beside ours with z, coloured by agreement; empty without any.
 std::string comparison_table(const std::vector<Comparison>& comparison);
 

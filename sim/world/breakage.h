@@ -1,10 +1,10 @@
 #pragma once
 // Spheres that break. When a contact stores more energy in a sphere than this can bear, four fragments stand
 // in its place: equal ones, inside it, at the corners of a tetrahedron, so that they overlap neither each
-// other nor neighbours more than it did. Mass and momentum are kept, exactly and to rounding; the energy of
-// the sphere's contacts is lost, as in fracture. Spheres inside a sphere are smaller than it in volume: the
-// fragments grow, a little at a time, until their volumes add up to that of the sphere. What that takes is
-// work against the weight of the pile, as when rock that breaks takes more room.
+// other nor neighbours more than it did. Mass, momentum and angular momentum are kept, to rounding; the
+// energy of the sphere's contacts is lost, as in fracture. Spheres inside a sphere are smaller than it in
+// volume: the fragments grow, a little at a time, until their volumes add up to that of the sphere. What that
+// takes is work against the weight of the pile, as when rock that breaks takes more room.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -24,7 +24,16 @@ struct Breakage {
   static constexpr double kSize = 0.62996052494743658;
   /// Its radius at first over that of the sphere: 1 / (1 + sqrt(3/2)), the largest of four that fit.
   static constexpr double kSizeAtFirst = 0.44948974278317809;
-  static constexpr double kGrowth = 1.01;  ///< of the radius, at a time
+  static constexpr double kGrowth = 1.01;       ///< of the radius, in kGrowthSteps
+  static constexpr double kGrowthSteps = 10.0;  ///< free steps of the fragment, sqrt(m / k)
+
+  /// Spin of the fragments over that of the sphere: four balls of a quarter of its mass each, rho =
+  /// 1 - kSizeAtFirst off its middle, have 2/3 rho^2 + 0.4 kSizeAtFirst^2 of its mass and radius squared
+  /// for moment of inertia, less than its 0.4; angular momentum is kept, here and while they grow.
+  static constexpr double spin_at_first() {
+    constexpr double rho = 1 - kSizeAtFirst;
+    return 0.4 / (2. / 3 * rho * rho + 0.4 * kSizeAtFirst * kSizeAtFirst);
+  }
 
   bool on() const { return fragility > 0; }
   /// Energy per mass (J/kg) that breaks a sphere; infinite for those that do not break.

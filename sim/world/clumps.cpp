@@ -7,11 +7,11 @@
 namespace scree {
 namespace {
 
-// Moments of inertia of a clump, which is alike all around its axis: two spheres with half of the mass each.
+// Of a grain, which is alike all around its axis, kg m2.
 struct Inertia {
   double along, across;
-  Inertia(double mass, double of_one, double arm)
-      : along(2 * of_one), across(2 * of_one + mass * arm * arm) {}
+  Inertia(const Clumps::Inertia& of_unit, double mass, double radius)
+      : along(of_unit.along * mass * radius * radius), across(of_unit.across * mass * radius * radius) {}
   Vec3 momentum(const Vec3& spin, const Vec3& axis) const {
     return across * spin + (along - across) * axis.dot(spin) * axis;
   }
@@ -38,8 +38,16 @@ double Clumps::size() const {
   return 1 / std::cbrt(1 + 1.5 * elongation - 0.5 * elongation * elongation * elongation);
 }
 
-Vec3 clump_angular_momentum(const Vec3& spin, const Vec3& axis, double mass, double inertia, double arm) {
-  return Inertia(mass, inertia, arm).momentum(spin, axis);
+Clumps::Inertia Clumps::inertia() const {
+  const double e = elongation, e2 = e * e, e3 = e2 * e, e5 = e3 * e2, volume = 2. / 3 + e - e3 / 3;
+  const double along = (8. / 15 + e - 2 * e3 / 3 + e5 / 5) / (2 * volume);
+  const double out2 = 2. / 15 + e3 / 3 - e5 / 5 + e * (0.5 - e2 + e2 * e2 / 2) + e2 * (2. / 3 + e - e3 / 3);
+  return {along, along / 2 + out2 / volume};
+}
+
+Vec3 clump_angular_momentum(const Clumps& clumps, const Vec3& spin, const Vec3& axis, double mass,
+                            double radius) {
+  return Inertia(clumps.inertia(), mass, radius).momentum(spin, axis);
 }
 
 ClumpSpheres spheres_of_clump(const Clumps& clumps, const NewSphere& grain, double mass) {
@@ -52,13 +60,14 @@ ClumpSpheres spheres_of_clump(const Clumps& clumps, const NewSphere& grain, doub
     two.place[k] = grain.position + out;
     two.velocity[k] = grain.velocity + grain.spin.cross(out);
   }
-  two.angular_momentum = clump_angular_momentum(grain.spin, axis, mass, 0.4 * 0.5 * mass * r * r, arm);
+  two.angular_momentum = clump_angular_momentum(clumps, grain.spin, axis, mass, r);
   return two;
 }
 
 void move_clumps(const LeapfrogView& view, const Clumps& clumps, BlockWork& work) {
   Spheres& s = view.spheres;
   const double dt = view.dt;
+  const Clumps::Inertia of_unit = clumps.inertia();
   double damped = 0;
   const auto look = [&](int i) {
     if (const double out2 = view.pairs.way_out2(i, s.place[i]); out2 > PairList::kNearRim2) {
@@ -71,7 +80,7 @@ void move_clumps(const LeapfrogView& view, const Clumps& clumps, BlockWork& work
     if (p < i) continue;
     const double mass = s.velocity[i].w + s.velocity[p].w, radius = s.place[i].w,
                  length = clumps.elongation * radius;
-    const Inertia inertia(mass, s.spin[i].w, length);
+    const Inertia inertia(of_unit, mass, radius);
     const Vec3 x0 = s.place[i].vec(), x1 = s.place[p].vec(), arm = 0.5 * (x1 - x0), middle = 0.5 * (x0 + x1);
     const Vec3 v = 0.5 * (s.velocity[i].vec() + s.velocity[p].vec()), w = s.spin[i].vec();
     const ForceSum &a = view.sum[i], &b = view.sum[p];

@@ -1,7 +1,7 @@
 #pragma once
 // Grains that are no spheres: two equal spheres, rigidly joined. Contacts are those of the spheres; the grain
-// moves by the sum of their forces and by the moment about its middle. Half of the mass lies in each sphere,
-// so that momentum, angular momentum and energy of the grain are the sums over its spheres.
+// moves by the sum of their forces and by the moment about its middle. It is a body of one density that fills
+// the union of the two spheres, each half of it half of the mass.
 //
 // One step: forces on both spheres at x(t); V(t + dt/2) of the middle and L(t + dt/2), angular momentum about
 // it in world axes, by leapfrog with local damping of the grain's force and moment; spin from L with the axis
@@ -30,6 +30,15 @@ struct Clumps {
   double size() const;
   /// Length of a grain over its diameter.
   double length() const { return (1 + elongation) * size(); }
+
+  /// Moments of inertia of the union about its middle over mass and square of a sphere's radius: along the
+  /// axis and across it. With slices pi (1 - u^2) of a half, u from -e to 1, at e + u from the middle:
+  /// volume V = 2/3 + e - e^3/3, along (8/15 + e - 2 e^3/3 + e^5/5) / (2 V), across along / 2 +
+  /// (2/15 + e^3/3 - e^5/5 + e (1/2 - e^2 + e^4/2) + e^2 (2/3 + e - e^3/3)) / V.
+  struct Inertia {
+    double along, across;
+  };
+  Inertia inertia() const;
 };
 
 /// The two spheres of a grain with an axis (a unit vector; zero: along x); the grain's number stays with the
@@ -41,9 +50,10 @@ struct ClumpSpheres {
 };
 ClumpSpheres spheres_of_clump(const Clumps& clumps, const NewSphere& grain, double mass);
 
-/// Angular momentum (kg m2/s) of a clump about its middle: spin (rad/s), axis (a unit vector), mass of both
-/// spheres (kg), moment of inertia of one about its own middle (kg m2), its distance from the grain's (m).
-Vec3 clump_angular_momentum(const Vec3& spin, const Vec3& axis, double mass, double inertia, double arm);
+/// Angular momentum (kg m2/s) of a clump about its middle: spin (rad/s), axis (a unit vector), mass of the
+/// grain (kg), radius of one of its spheres (m).
+Vec3 clump_angular_momentum(const Clumps& clumps, const Vec3& spin, const Vec3& axis, double mass,
+                            double radius);
 
 /// Moves the clumps whose first sphere is one of the block's awake by one step, after leapfrog(); finds those
 /// near the rim of their balls.

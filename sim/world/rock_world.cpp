@@ -109,7 +109,7 @@ void RockWorld::add_spheres(const std::vector<NewSphere>& spheres) {
 
 std::array<int, Breakage::kFragments> RockWorld::replace_by_fragments(int i) {
   const Vec3 middle = spheres_.place[i].vec(), velocity = spheres_.velocity[i].vec(),
-             spin = spheres_.spin[i].vec();
+             spin = Breakage::spin_at_first() * spheres_.spin[i].vec();
   const double radius = spheres_.place[i].w, mass = spheres_.velocity[i].w / Breakage::kFragments;
   const auto places = fragment_places(static_cast<std::uint64_t>(spheres_.id[i]));
   std::array<int, Breakage::kFragments> fragments{};
@@ -131,7 +131,7 @@ std::array<int, Breakage::kFragments> RockWorld::replace_by_fragments(int i) {
     const double r = 0.5 * fragment.diameter;
     spheres_.place[i] = {fragment.position.x(), fragment.position.y(), fragment.position.z(), r};
     spheres_.velocity[i] = {fragment.velocity.x(), fragment.velocity.y(), fragment.velocity.z(), mass};
-    spheres_.spin[i].w = 0.4 * mass * r * r;
+    spheres_.spin[i] = {spin.x(), spin.y(), spin.z(), 0.4 * mass * r * r};
     drop_body(spheres_.id[i]);
   }
   spheres_.movable += Breakage::kFragments - 1;
@@ -140,8 +140,11 @@ std::array<int, Breakage::kFragments> RockWorld::replace_by_fragments(int i) {
 }
 
 void RockWorld::set_radius(int i, double radius) {
+  Quad& spin = spheres_.spin[i];
+  const double before = spin.w;
   spheres_.place[i].w = radius;
-  spheres_.spin[i].w = 0.4 * spheres_.velocity[i].w * radius * radius;
+  spin.w = 0.4 * spheres_.velocity[i].w * radius * radius;
+  spin.set(before / spin.w * spin.vec());
   drop_body(spheres_.id[i]);
 }
 
@@ -203,8 +206,8 @@ void RockWorld::set_velocity(std::int64_t id, const Vec3& velocity, const Vec3& 
   const int other = spheres_.partner.empty() ? -1 : spheres_.partner[i];
   if (other >= 0) {
     const Vec3 arm = 0.5 * (spheres_.place[i].vec() - spheres_.place[other].vec());
-    const Vec3 angular = clump_angular_momentum(spin, arm.normalized(), 2 * spheres_.velocity[i].w,
-                                                spheres_.spin[i].w, arm.norm());
+    const Vec3 angular = clump_angular_momentum(settings_.clumps, spin, arm.normalized(),
+                                                spheres_.grain_mass(i), spheres_.place[i].w);
     for (const int k : {i, other}) {
       account_.set_moving -= kinetic_energy(k);
       spheres_.velocity[k].set(velocity + spin.cross(k == i ? arm : Vec3(-arm)));
@@ -294,8 +297,7 @@ Energy RockWorld::energy() const {
 }
 
 double RockWorld::kinetic_energy(int i) const {
-  const Quad &v = spheres_.velocity[i], &w = spheres_.spin[i];
-  return 0.5 * v.w * v.vec().squaredNorm() + 0.5 * w.w * w.vec().squaredNorm();
+  return spheres_.kinetic_energy(i);
 }
 
 double RockWorld::gravity_energy(int i) const {

@@ -17,9 +17,8 @@ constexpr double kToolSkin =
 constexpr double kToolTravel = 0.25;  // of the smallest radius: most that a tool may travel in one step
 constexpr double kNearGap =
     0.05;  // of the smaller radius: gap below which a contact is expected (stable step)
-constexpr double kMostTravel = 0.2;          // of the radius: most that a sphere may travel in one step
-constexpr double kStepsBetweenGrowths = 10;  // of the smallest sphere in flight; fragments part meanwhile
-constexpr double kLargestStep = 0.05;        // s; for scenes with nothing stiff in them
+constexpr double kMostTravel = 0.2;    // of the radius: most that a sphere may travel in one step
+constexpr double kLargestStep = 0.05;  // s; for scenes with nothing stiff in them
 
 // A dashpot sees the velocity half a step late. With the share beta of critical damping leapfrog is stable up
 // to w dt = 2 (sqrt(1 + beta^2) - beta), without it up to 2; and it may take some two thirds of the speed in
@@ -103,7 +102,7 @@ void RrlinearWorld::advance_to(double end) {
       steps_to_check_ = kStepsBetweenChecks - 1;
       check_spheres(sleep_.awake());
       if (repair_due_) repair();
-      if (!growing_.empty() && time_ >= next_growth_) {
+      if (!growing_.empty()) {
         before_fragments_ = energy_by_places();
         grow_fragments();
         prepare();
@@ -470,19 +469,23 @@ void RrlinearWorld::break_spheres() {
       if (n.sphere < spheres_.movable) left_alone.push_back(n.sphere);
     }
   wake(left_alone);
+  if (growing_.empty()) last_growth_ = time_;
   for (const int i : broken) {
     if (spheres_.lost[i]) continue;
     const double radius = Breakage::kSize * spheres_.place[i].w;
     for (const int fragment : replace_by_fragments(i)) growing_.push_back({fragment, radius});
   }
-  next_growth_ = time_ + kStepsBetweenGrowths * longest_step_;
   changed_ = true;
 }
 
+// At a pace of the fragments' own, whatever the time step.
 void RrlinearWorld::grow_fragments() {
-  next_growth_ = time_ + kStepsBetweenGrowths * longest_step_;
+  const double passed = time_ - last_growth_;
+  last_growth_ = time_;
   std::erase_if(growing_, [&](const GrowingSphere& g) {
-    const double grown = std::min(Breakage::kGrowth * spheres_.place[g.sphere].w, g.radius);
+    const double step = std::sqrt(spheres_.velocity[g.sphere].w / ball_ball(law_, g.radius, g.radius).kn),
+                 growth = std::pow(Breakage::kGrowth, passed / (Breakage::kGrowthSteps * step));
+    const double grown = std::min(growth * spheres_.place[g.sphere].w, g.radius);
     if (!spheres_.lost[g.sphere]) set_radius(g.sphere, grown);
     return spheres_.lost[g.sphere] || grown == g.radius;
   });
@@ -612,8 +615,8 @@ double RrlinearWorld::elastic_energy_of(const MeshContact& c, int i) const {
 AwakeEnergy RrlinearWorld::awake_energy(const BlockWork& work) const {
   AwakeEnergy e;
   for (const int i : work.awake) {
-    const Quad &x = spheres_.place[i], &v = spheres_.velocity[i], &w = spheres_.spin[i];
-    e.kinetic += 0.5 * v.w * v.vec().squaredNorm() + 0.5 * w.w * w.vec().squaredNorm();
+    const Quad &x = spheres_.place[i], &v = spheres_.velocity[i];
+    e.kinetic += spheres_.kinetic_energy(i);
     e.potential += potential_energy(i);
     e.scale += v.w * settings_.gravity.norm() * x.w;
     for (int k = 0; k < facets_.count(i); ++k) e.elastic += elastic_energy_of(facets_.contact(i, k), i);

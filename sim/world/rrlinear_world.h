@@ -8,9 +8,9 @@
 //   2. gravity and local damping; v(t + dt/2) = v(t - dt/2) + a dt; x(t + dt) = x(t) + v(t + dt/2) dt;
 //   3. tools move; spheres that have left their ball are listed anew.
 // The step is recomputed as the run goes on: safety * min over the spheres that move and their axes of sqrt(m
-// / k), sqrt(I / k_rot) with k summed over the contacts a sphere has and those it may soon have, shorter where
-// they have dashpots, and at most that of the smallest sphere in flight; a sphere that wakes brings its own
-// bound. Spheres at rest may sleep (sleep.h).
+// / k), sqrt(I / k_rot) with k summed over the contacts a sphere has and those it may soon have, shorter
+// where they have dashpots, and at most that of the smallest sphere in flight; a sphere that wakes brings its
+// own bound. Spheres at rest may sleep (sleep.h).
 //
 // Sums over contacts run in a fixed order (step_kernels.h), so results are bitwise the same for any number of
 // threads.
@@ -106,7 +106,7 @@ class RrlinearWorld final : public RockWorld {
   std::vector<int> disturbed_, near_rim_;
   std::vector<GrowingSphere> growing_;
   std::vector<double> bears_;               // by sphere: energy of a contact that does not break it, J
-  double next_growth_ = 0;                  // of fragments, s
+  double last_growth_ = 0;                  // of fragments, s
   std::optional<double> before_fragments_;  // energy of the scene before spheres broke or fragments grew, J
   bool blocks_due_ = true;                  // who is awake has changed
 };

@@ -7,9 +7,10 @@ namespace scree {
 namespace {
 
 constexpr double kWindow = 3.0;         // times sqrt(smallest radius / g)
-constexpr double kQuietTravel = 0.005;  // of the radius, in one window
+constexpr double kQuietTravel = 0.005;  // of the radius, in as many windows as make one of the sphere's own
 constexpr double kQuietPull = 0.1;      // of the weight
-constexpr int kQuietWindows = 2;
+constexpr double kQuietWindows = 2;     // of the sphere's own, 3 sqrt(radius / g)
+constexpr double kMostWindows = 255;    // that are counted
 
 double overlap_of(const Spheres& s, int i, int j) {
   return s.place[i].w + s.place[j].w - (s.place[i].vec() - s.place[j].vec()).norm();
@@ -37,6 +38,7 @@ void Sleep::renumber(const std::vector<int>& order, Spheres& s, PairList& pairs,
   const int n = s.movable;
   double smallest = 1e300;
   for (int i = 0; i < n; ++i) smallest = std::min(smallest, s.place[i].w);
+  smallest_radius_ = smallest;
   window_ = gravity > 0 && n > 0 ? kWindow * std::sqrt(smallest / gravity) : 1e300;
   if (window_start_.empty()) window_end_ = time + window_;
 
@@ -87,9 +89,9 @@ void Sleep::look(Spheres& s, std::span<const ForceSum> sums, PairList& pairs,
   window_end_ = time + window_;
   const double g = gravity.norm();
   const auto still = [&](int i) {
-    const double radius = s.place[i].w;
-    return !stay_awake[i] && (s.place[i].vec() - window_start_[i]).norm() < kQuietTravel * radius &&
-           s.velocity[i].vec().norm() * window_ < 2.0 * kQuietTravel * radius;
+    const double travel = kQuietTravel * s.place[i].w / own_windows(s.place[i].w);
+    return !stay_awake[i] && (s.place[i].vec() - window_start_[i]).norm() < travel &&
+           s.velocity[i].vec().norm() * window_ < 2.0 * travel;
   };
   // A clump is quiet as a whole: its spheres hold each other.
   std::vector<std::uint8_t> quiet_ones(awake_.size());
@@ -107,15 +109,15 @@ void Sleep::look(Spheres& s, std::span<const ForceSum> sums, PairList& pairs,
     const int i = awake_[a];
     const bool quiet = quiet_ones[a] != 0;
     window_start_[i] = s.place[i].vec();
-    quiet_windows_[i] = quiet ? static_cast<std::uint8_t>(quiet_windows_[i] + 1) : std::uint8_t{0};
-    if (quiet_windows_[i] < kQuietWindows) {
+    quiet_windows_[i] =
+        quiet ? static_cast<std::uint8_t>(std::min(quiet_windows_[i] + 1, 255)) : std::uint8_t{0};
+    if (quiet_windows_[i] < std::min(kQuietWindows * own_windows(s.place[i].w), kMostWindows)) {
       awake_[kept++] = i;
       continue;
     }
     tolerance2_[i] = wake_limit2(i, s, pairs, law, g, wake_tolerance_);
     s.asleep[i] = 1;
-    put_to_sleep_ += 0.5 * s.velocity[i].w * s.velocity[i].vec().squaredNorm() +
-                     0.5 * s.spin[i].w * s.spin[i].vec().squaredNorm();
+    put_to_sleep_ += s.kinetic_energy(i);
     s.velocity[i].set(Vec3::Zero());
     s.spin[i].set(Vec3::Zero());
     if (!s.angular.empty()) s.angular[i].set(Vec3::Zero());

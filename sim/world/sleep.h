@@ -1,14 +1,17 @@
 #pragma once
 // Which spheres sleep, and what wakes them.
 //
-// A sphere falls asleep when it has been quiet for two windows in a row: moved less than kQuietTravel of its
-// radius, and pulled by less than kQuietPull of its weight. Its place is then frozen; contacts between two
-// sleepers keep their forces and are not computed. Contacts between a sleeper and an awake sphere are: the
-// sleeper remembers the force it has got used to, and wakes when the force of any one contact has changed by
-// more than the tolerance times (its weight + the mean of its contact forces). A sphere near a tool that
+// A sphere falls asleep when it has been quiet for twice 3 sqrt(radius / g): moved by less than kQuietTravel
+// of its radius in either, which is slower than 0.0017 sqrt(radius g), and pulled by less than kQuietPull of
+// its weight. It is looked at in windows of the smallest sphere's. Its place is then frozen; contacts between
+// two sleepers keep their forces and are not computed. Contacts between a sleeper and an awake sphere are:
+// the sleeper remembers the force it has got used to, and wakes when the force of any one contact has changed
+// by more than the tolerance times (its weight + the mean of its contact forces). A sphere near a tool that
 // moves does not sleep.
 //
 // Whatever is done every step goes over the lists kept here, not over all spheres.
+#include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -66,11 +69,14 @@ class Sleep {
   }
 
  private:
+  /// Windows that make one of a sphere's own.
+  double own_windows(double radius) const { return std::sqrt(std::max(radius / smallest_radius_, 1.0)); }
   static void forget_rest(int i, const Spheres& spheres, PairList& pairs);
 
   bool on_;
   double wake_tolerance_;
   double window_ = 0, window_end_ = 0;  // s
+  double smallest_radius_ = 0;          // m
   std::vector<Vec3> window_start_;      // places
   std::vector<std::uint8_t> quiet_windows_;
   std::vector<double> tolerance2_;  // N^2

@@ -40,6 +40,14 @@ struct Spheres {
     return place.capacity() * (3 * sizeof(Quad) + 14) +
            angular.capacity() * (sizeof(Quad) + sizeof(std::int32_t));
   }
+  /// Energy of motion, J. Of a clump, whose energy of rotation is spin times angular momentum over two, a
+  /// half: what its spheres' velocities about the middle have of it is in their energy of motion already.
+  double kinetic_energy(int i) const {
+    const double shift = 0.5 * velocity[i].w * velocity[i].vec().squaredNorm();
+    if (partner.empty() || partner[i] < 0) return shift + 0.5 * spin[i].w * spin[i].vec().squaredNorm();
+    const Vec3 arm = 0.5 * (place[i].vec() - place[partner[i]].vec()), w = spin[i].vec();
+    return shift + 0.25 * w.dot(angular[i].vec()) - 0.5 * velocity[i].w * w.cross(arm).squaredNorm();
+  }
   /// Of the grain that sphere i belongs to, kg.
   double grain_mass(int i) const { return (partner.empty() || partner[i] < 0 ? 1 : 2) * velocity[i].w; }
   /// Of the grains of sphere i and of another, which may be fixed, kg.

@@ -136,8 +136,8 @@ void FacetList::state(Stream& stream) {
 
 template <class Stream>
 void Sleep::state(Stream& stream) {
-  stream(window_, window_end_, window_start_, quiet_windows_, tolerance2_, awake_, fallen_asleep_, asleep_,
-         put_to_sleep_);
+  stream(window_, window_end_, smallest_radius_, window_start_, quiet_windows_, tolerance2_, awake_,
+         fallen_asleep_, asleep_, put_to_sleep_);
 }
 
 template <class Stream>
@@ -164,7 +164,7 @@ void RrlinearWorld::state(Stream& stream) {
   shared_state(stream);
   stream.section("rrlinear", 2);
   stream(changed_, repair_due_, dt_, smallest_radius_, longest_step_, last_dt_, steps_to_check_,
-         checks_to_energy_, energy_watch_, friction_, watched_, growing_, bears_, next_growth_, blocks_due_,
+         checks_to_energy_, energy_watch_, friction_, watched_, growing_, bears_, last_growth_, blocks_due_,
          pairs_, facets_, sleep_, sorted_spheres_, before_fragments_);
   // Forces on sleepers are not those of anything, nor are the companions of torques: what is added up there
   // depends on the threads.

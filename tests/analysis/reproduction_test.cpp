@@ -36,7 +36,9 @@ TEST(Trends, WelchByHand) {
   EXPECT_DOUBLE_EQ(compared[0].difference, 2);
   EXPECT_NEAR(compared[0].p, 0.221, 0.002);
   EXPECT_NEAR(compared[0].high - compared[0].difference, 3.220 * std::sqrt(5.0 / 3), 0.01);
-  EXPECT_EQ(compared[0].verdict, TrendVerdict::undecided);
+  EXPECT_EQ(compared[0].verdict, TrendVerdict::undecided) << "0.28 lies within -2.2 to 6.2";
+  trend.difference = 6.5;
+  EXPECT_EQ(compare_trends(cases, {trend})[0].verdict, TrendVerdict::not_seen);
   trend.relative = true;  // over |1|; deviation of 3 / 1 is sqrt(1/3 + 9 * 4/3)
   EXPECT_DOUBLE_EQ(compare_trends(cases, {trend})[0].difference, 2);
   EXPECT_NEAR(compare_trends(cases, {trend})[0].high - 2, 3.220 * std::sqrt(1.0 / 3 + 12), 0.02);
@@ -104,11 +106,11 @@ TEST(Reproduction, SaysWhatAgreesAndWhatDoesNot) {
   const ReferenceValue far{"A1", "chi", "S6", "pfc3d", 0.9, 0.09, "-", "eq", "line 1855"};
   a1.comparison = compare_with_reference(a1.runs.seeds, {near, far}, {"A1"});
   a1.runs.missing = 3;
-  const auto lines = reproduction_in_words({a1}, {});
-  EXPECT_THAT(lines,
+  const ReproductionWords words = reproduction_in_words({a1}, {});
+  EXPECT_THAT(words.runs,
               Contains("a1: 2 runs done, 3 not run, 0 failed, 0 left out because they did not come to rest"));
-  EXPECT_THAT(lines, Contains("1 of 2 values printed of PFC3D agree within two standard deviations (50 %)"));
-  EXPECT_THAT(lines, Contains(HasSubstr("does not agree: A1 chi S6 (PFC3D): printed 0.9, here 0.3")));
+  EXPECT_THAT(words.counts, Contains("1 of 2 values printed of PFC3D agree within two standard deviations (50 %)"));
+  EXPECT_THAT(words.apart, Contains(HasSubstr("does not agree: A1 chi S6 (PFC3D): printed 0.9, here 0.3")));
 }
 
 TEST(Signs, OfSeedsAreTestedToOneSide) {
@@ -120,9 +122,9 @@ TEST(Signs, OfSeedsAreTestedToOneSide) {
   EXPECT_NEAR(signs[0].p_crest, 0.0371, 1e-4);
   EXPECT_NEAR(signs[0].zero.mean, 0.7, 1e-12);
   EXPECT_EQ(signs[0].zero.n, 2);
-  EXPECT_EQ(signs[0].as_expected, 6);
+  EXPECT_EQ(signs[0].as_expected, 3);
   EXPECT_TRUE(std::isnan(signs[1].p_crest));
-  const auto lines = reproduction_in_words({a1, runs("b1", {-1}), runs("d1", {1, -2})}, {});
+  const auto lines = reproduction_in_words({a1, runs("b1", {-1}), runs("d1", {1, -2})}, {}).trends;
   EXPECT_THAT(lines,
               Contains("a1: chi(S1) -2.00 +- 1.00: below 0, p 0.037; chi(S6) 0.30 +- 0.00: no scatter; chi "
                        "changes sign at x/L 0.70 +- 0.14"));
@@ -150,8 +152,12 @@ TEST(VelocityTrend, OverAllSeedsBesidePfc3ds) {
   EXPECT_DOUBLE_EQ(trends[0].order.statistic, 9.5);
   EXPECT_DOUBLE_EQ(trends[0].order.expected, 6);
   EXPECT_NEAR(trends[0].printed_slope, 0.5, 1e-12);
+  EXPECT_EQ(trends[0].verdict, TrendVerdict::undecided);
+  ASSERT_EQ(trends[0].means.size(), 3u);
+  EXPECT_EQ(trends[0].means[1].x, 2);
+  EXPECT_EQ(trends[0].means[1].y, 3);
   EXPECT_THAT(
-      reproduction_in_words(cases, {}),
+      reproduction_in_words(cases, {}).trends,
       Contains(HasSubstr("chi of S1 over the velocity of the blade, d1 to d3, 6 runs: slope +1.00 per m/s "
                          "(95 % -0.70 to +2.70, p 0.178); Jonckheere-Terpstra p 0.")));
   cases.pop_back();
@@ -172,7 +178,7 @@ TEST(Reproduction, ReportHasItsTablesAndFigures) {
   std::ifstream in(folder / "report.html");
   std::ostringstream page;
   page << in.rdbuf();
-  for (const char* text : {"same direction and size", "4 of 4" /* signs of both seeds */, "p of χ &lt; 0",
+  for (const char* text : {"same direction and size", "2 of 2" /* seeds with both signs */, "p of χ &lt; 0",
                            "x/L where χ changes sign", "figure 6.7 of the thesis"})
     EXPECT_NE(page.str().find(text), std::string::npos) << text;
   EXPECT_TRUE(fs::exists(folder / "pictures" / "payload_chi.svg"));

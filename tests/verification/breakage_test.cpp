@@ -102,6 +102,57 @@ TEST(Breakage, KeepsMassMomentumAndVolume) {
   EXPECT_LT((momentum() - before).norm(), 1e-9 * mass_before * speed);
 }
 
+// Angular momentum about the middle of a sphere that spins and is hit without friction: m x v + I w over its
+// fragments is that of its spin, at once and when they are grown.
+TEST(Breakage, KeepsAngularMomentum) {
+  RrlinearWorld world(brittle(weightless(kDt)));
+  const double speed = std::sqrt(3 * kStrength), r = kRadius;
+  world.add_spheres(
+      {ball({0, 0, 0}, r, {speed, 0, 0}, {20, -30, 50}), ball({2.001 * r, 0, 0}, r, {-speed, 0, 0})});
+  const auto angular = [&] {  // places stand half a step ahead of velocities, which v x v = 0 forgives
+    const Spheres& s = world.spheres();
+    Vec3 sum = Vec3::Zero();
+    for (int i = 0; i < s.size(); ++i)
+      sum += s.velocity[i].w * s.place[i].vec().cross(s.velocity[i].vec()) + s.spin[i].w * s.spin[i].vec();
+    return sum;
+  };
+  const Vec3 before = angular();
+  EXPECT_NEAR(before.norm(), 0.4 * ball_mass(world.settings().material, r) * r * r * Vec3(20, -30, 50).norm(),
+              1e-12);
+  while (world.statistics().broken_spheres == 0 && world.time() < 0.01) step(world);
+  ASSERT_EQ(world.statistics().broken_spheres, 2);
+  EXPECT_LT((angular() - before).norm(), 1e-9 * before.norm());
+  world.advance_to(0.5);
+  EXPECT_LT((angular() - before).norm(), 1e-6 * before.norm());
+}
+
+// How fast fragments grow is theirs: 1 % of the radius in ten times sqrt(m / k), whatever the time step and
+// the finest rock around. From kSizeAtFirst to kSize in ln(0.630 / 0.449) / ln(1.01) = 33.9 of these.
+TEST(Breakage, FragmentsGrowAtTheirOwnPace) {
+  for (const double dt : {kDt, kDt / 4})
+    for (const bool fine : {false, true}) {
+      RrlinearWorld world(brittle(weightless(dt)));
+      std::vector<NewSphere> spheres{ball({0, 0, 0}, kRadius, {2.5, 0, 0}),
+                                     ball({2.001 * kRadius, 0, 0}, kRadius, {-2.5, 0, 0})};
+      if (fine) spheres.push_back(ball({5, 0, 0}, 0.1 * kRadius));
+      world.add_spheres(spheres);
+      while (world.statistics().broken_spheres == 0 && world.time() < 0.01) step(world);
+      const double begin = world.time(), grown = kRadius * Breakage::kSize,
+                   mass = ball_mass(world.settings().material, kRadius) / 4;
+      const double pace = 10 * std::sqrt(mass / pair_stiffness(world.settings().material, grown, grown));
+      const auto largest = [&] {
+        double r = 0;
+        for (const Grain& g : world.snapshot().grains)
+          if (g.position.x() < 4) r = std::max(r, 0.5 * g.diameter);
+        return r;
+      };
+      while (largest() < grown * (1 - 1e-9) && world.time() < begin + 100 * pace)
+        world.advance_to(world.time() + 0.1 * pace);
+      const double expected = std::log(Breakage::kSize / Breakage::kSizeAtFirst) / std::log(1.01) * pace;
+      EXPECT_NEAR(world.time() - begin, expected, 0.02 * expected) << dt << " " << fine;
+    }
+}
+
 // The four do not overlap, and lie inside the sphere.
 TEST(Breakage, FragmentsLieInsideTheSphere) {
   const double r = Breakage::kSizeAtFirst;

@@ -63,6 +63,26 @@ TEST(Sleep, CreepingBallDoesNotSleep) {
   EXPECT_NEAR(world.snapshot().grains[0].position.x(), 10 * speed, 0.01 * 10 * speed);
 }
 
+// A block is judged by its own time to fall, 3 sqrt(R / g), and not by that of the smallest sphere around:
+// 0.0017 sqrt(R g) = 6 mm/s is the limit of this one, of which a window of the small one's would make 31.
+TEST(Sleep, BlockThatCreepsBesideSmallRockDoesNotSleep) {
+  constexpr double kBlock = 1.33, kSmall = 0.05;
+  for (const double speed : {0.01, 0.001}) {
+    WorldSettings settings;
+    settings.sleep = true;
+    RrlinearWorld world(settings);
+    world.add_mesh(make_box({-20, -20, -2}, {20, 20, 0}), {0, 0}, Motion::fixed(Pose{}));
+    world.add_spheres(
+        {ball({0, 0, kBlock}, {speed, 0, 0}, kBlock), ball({9, 0, kSmall}, Vec3::Zero(), kSmall)});
+    world.advance_to(12);
+    const double limit = 0.005 * kBlock / (3 * std::sqrt(kBlock / 9.81));
+    EXPECT_EQ(world.statistics().asleep, speed < limit ? 2 : 1);
+    if (speed > limit) {
+      EXPECT_NEAR(world.snapshot().grains[0].position.x(), 12 * speed, 0.01 * 12 * speed);
+    }
+  }
+}
+
 TEST(Sleep, BlowWakes) {
   Bench b({ball({0, 0, kRadius})});
   b.world.advance_to(10);
