@@ -257,10 +257,7 @@ int run_equivalence(const CalibrateOptions& options) {
   const scree::EquivalenceSpec& spec = loaded.spec;
   const scree::ScenarioResult first =
       scree::load_scenario(spec.scenario, spec.fixed, asset_dir(), scree::ReadFor::numbers);
-  if (!first.errors.empty()) {
-    fmt::print(stderr, "{}\n", first.errors.front().text());
-    return kBadInput;
-  }
+  if (!nothing_wrong(first.errors, first.warnings)) return kBadInput;
   if (const std::string why = scree::why_not_given(first.scenario, spec.output); !why.empty()) {
     fmt::print(stderr, "output '{}': {}\n", spec.output, why);
     return kBadInput;

@@ -1,6 +1,6 @@
 #pragma once
 // The subcommands; each returns the exit code of the program.
-#include <csignal>
+#include <atomic>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -145,4 +145,5 @@ std::filesystem::path asset_dir();
 std::string command_line();
 
 /// Set by Ctrl-C; a run looks at it and ends cleanly.
-extern volatile std::sig_atomic_t interrupted;
+/// Its value is the signal; 0: none.
+extern std::atomic<int> interrupted;

@@ -1,5 +1,5 @@
 #pragma once
-// What sweep, calibrate and predict share on the command line.
+// What commands that run ensembles share on the command line.
 #include <filesystem>
 #include <memory>
 #include <optional>

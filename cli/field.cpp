@@ -75,7 +75,7 @@ std::optional<WrittenDataset> dataset_of(const FieldCliOptions& options, const s
   if (!is_of_kind(options.scenario, scree::FileKind::scenario)) return std::nullopt;
   scree::ScenarioResult loaded =
       scree::load_scenario(options.scenario, {}, asset_dir(), scree::ReadFor::numbers);
-  if (!nothing_wrong(loaded.errors)) return std::nullopt;
+  if (!nothing_wrong(loaded.errors, loaded.warnings)) return std::nullopt;
   const scree::FieldDatasetRequest request{options.scenario,
                                            scree::measured_sections(loaded.scenario, sections),
                                            options.gradings.filename().string(), options.observables};

@@ -232,7 +232,7 @@ bool may_begin(const ImageOptions& options, std::optional<scree::Scenario>& scen
     if (!is_of_kind(options.scenario, scree::FileKind::scenario)) return false;
     scree::ScenarioResult loaded =
         scree::load_scenario(options.scenario, {}, asset_dir(), scree::ReadFor::numbers);
-    if (!nothing_wrong(loaded.errors)) return false;
+    if (!nothing_wrong(loaded.errors, loaded.warnings)) return false;
     if (options.photos.size() == 1 && !options.relative_uncertainty) {
       fmt::print(stderr,
                  "--scenario: one photograph says nothing of the scatter between repeats: give several, or "

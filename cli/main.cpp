@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
@@ -19,7 +20,8 @@
 #include "sim/material/input_bytes.h"
 #include "sim/scene/scenario_values.h"
 
-volatile std::sig_atomic_t interrupted = 0;
+std::atomic<int> interrupted = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler sets it");
 
 namespace {
 

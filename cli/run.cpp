@@ -2,14 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
-#include <thread>
 
+#include "analysis/diagnose/in_parallel.h"
 #include "analysis/report/conductivity_table.h"
 #include "analysis/report/report.h"
 #include "analysis/results/summary.h"
@@ -24,12 +22,11 @@
 #include "sim/io/text_file.h"
 #include "sim/io/trajectory.h"
 #include "sim/material/input_bytes.h"
+#include "sim/scene/scenario_keys.h"
 
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr std::uint64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
 
 // The seeds of a run: `count` of them, those of the scenario first; none if the integers end before.
 std::vector<std::uint64_t> chosen_seeds(const scree::Scenario& scenario, int count) {
@@ -37,7 +34,7 @@ std::vector<std::uint64_t> chosen_seeds(const scree::Scenario& scenario, int cou
   if (count == 0) return seeds;
   while (static_cast<int>(seeds.size()) < count) {
     const std::uint64_t last = *std::max_element(seeds.begin(), seeds.end());
-    if (last == kLargestSeed) return {};
+    if (last == scree::kLargestSeed) return {};
     seeds.push_back(last + 1);
   }
   seeds.resize(static_cast<std::size_t>(count));
@@ -52,6 +49,7 @@ struct Plan {
   fs::path out;
   fs::path pile;  // run folder with the piles to be read; empty: simulate
   bool resume = false, summary_only = false;
+  std::vector<std::string> warnings;  // of the scenario
   RunRecord record;
   std::unique_ptr<FolderLock> lock;
 
@@ -77,6 +75,7 @@ std::optional<Plan> plan_new(const RunOptions& options) {
   if (!nothing_wrong(loaded.errors, loaded.warnings)) return std::nullopt;
   Plan plan;
   plan.scenario = std::move(loaded.scenario);
+  plan.warnings = std::move(loaded.warnings);
   plan.scenario.seeds = chosen_seeds(plan.scenario, options.seeds);
   if (plan.scenario.seeds.empty())
     throw std::runtime_error(fmt::format(
@@ -110,6 +109,7 @@ std::optional<Plan> plan_resumed(const RunOptions& options) {
   scree::ScenarioResult loaded = scree::load_scenario(file, {}, asset_dir());
   if (!nothing_wrong(loaded.errors, loaded.warnings)) return std::nullopt;
   plan.scenario = std::move(loaded.scenario);
+  plan.warnings = std::move(loaded.warnings);
   if (plan.record.program != program_version())
     throw std::runtime_error(
         fmt::format("{}: begun by {}, this is {}: the numbers may differ. Resume with that program, or start "
@@ -192,19 +192,13 @@ std::vector<SeedRun> run_seeds(const Plan& plan, int threads) {
   if (plan.record.keep_pile || !plan.pile.empty()) settings.pile = pile_hash(scenario);
   settings.keep_pile = plan.record.keep_pile;
   scree::ProgressDisplay display(scenario.seeds);
-  {
-    std::atomic<std::size_t> next{0};
-    std::vector<std::jthread> workers;
-    for (int w = 0; w < side_by_side; ++w)
-      workers.emplace_back([&] {
-        for (std::size_t k = next++; k < runs.size() && !interrupted; k = next++) {
-          SeedSettings own = settings;
-          own.folder = scree::seed_folder(plan.out, runs[k].seed);
-          if (!plan.pile.empty()) own.read_pile = scree::seed_folder(plan.pile, runs[k].seed);
-          run_seed(scenario, runs[k], own, display, k);
-        }
-      });
-  }
+  scree::in_parallel(runs.size(), side_by_side, [&](std::size_t k) {
+    if (interrupted) return;
+    SeedSettings own = settings;
+    own.folder = scree::seed_folder(plan.out, runs[k].seed);
+    if (!plan.pile.empty()) own.read_pile = scree::seed_folder(plan.pile, runs[k].seed);
+    run_seed(scenario, runs[k], own, display, k);
+  });
   display.finish();
   return runs;
 }
@@ -275,6 +269,7 @@ int run_run(const RunOptions& options) {
   if (!plan.resume) begin_folder(plan);
   std::vector<SeedRun> runs = run_seeds(plan, cores_or(options.threads));
   EndedSeeds ended = take_results(plan, runs);
+  ended.notes.insert(ended.notes.begin(), plan.warnings.begin(), plan.warnings.end());
   const auto end = [&](int code) {
     if (ended.worth_resuming) fmt::print(stderr, "to go on: scree run --resume {}\n", plan.out.string());
     if (!ended.keep_checkpoints) forget_checkpoints(plan);

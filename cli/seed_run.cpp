@@ -155,6 +155,7 @@ void simulate(const scree::Scenario& scenario, SeedRun& run, const SeedSettings&
     }
   } catch (const std::exception& error) {
     run.failure = error.what();  // of a file; the pile itself is good
+    run.worth_resuming = true;   // from its last checkpoint, when there is room
   }
   put_away();
 }

@@ -195,7 +195,7 @@ int show(const SweepOptions& options, const scree::Sweep& sweep, const std::vect
 int run_sweep(const SweepOptions& options) {
   if (!is_of_kind(options.file, scree::FileKind::sweep)) return kBadInput;
   const scree::SweepResult loaded = scree::load_sweep(options.file, asset_dir());
-  if (!nothing_wrong(loaded.errors)) return kBadInput;
+  if (!nothing_wrong(loaded.errors, loaded.warnings)) return kBadInput;
   const scree::Sweep& sweep = loaded.sweep;
   if (!options.output.empty())
     if (const std::string why = scree::why_not_given(sweep, options.output); !why.empty()) {

@@ -56,9 +56,11 @@ struct DatasetResult {
 ///   title, source: text
 ///   experiments: {NAME: {scenario: PATH relative to this file, set: {KEY: VALUE}}}
 ///   observables: measured.csv          columns experiment, observable, value, unit, std, repeats,
-///   uncertainty covariance: covariance.csv         optional; square, named experiment/observable, in the
-///   units of the table default_relative_uncertainty: 0.1  optional; of the value, for rows that have no
-///   uncertainty
+///   uncertainty,
+///                                      source
+///   covariance: covariance.csv         optional; square, named experiment/observable, units of the table
+///   default_relative_uncertainty: 0.1  optional; of the value, for rows that have no uncertainty
+///
 /// The standard uncertainty of a value is `uncertainty` where given, else std / sqrt(repeats), else std alone
 /// (which becomes a note), else that of the covariance, else the default.
 DatasetResult load_dataset(const std::filesystem::path& file, const std::filesystem::path& asset_dir);

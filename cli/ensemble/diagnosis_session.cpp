@@ -13,6 +13,7 @@
 #include "cli/ensemble/design.h"
 #include "cli/ensemble/run_request.h"
 #include "cli/ensemble/tried_models.h"
+#include "sim/effects/effect.h"
 
 namespace scree {
 namespace {
@@ -31,6 +32,18 @@ std::uint64_t hash_of(const std::string& name) {
   std::uint64_t hash = 0xcbf29ce484222325ull;
   for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
   return hash;
+}
+
+// The block of seeds of an effect's design, one of a hundred: that of its name, or the first behind it that
+// no effect before it in the list has. Rival effects are simulated with other random numbers.
+std::uint64_t seed_block(const std::string& name) {
+  std::set<std::uint64_t> taken;
+  for (const Effect& effect : all_effects()) {
+    std::uint64_t block = hash_of(std::string(effect.name)) % 100;
+    while (!taken.insert(block).second) block = (block + 1) % 100;
+    if (effect.name == name) return block;
+  }
+  throw std::invalid_argument("no effect is called " + name);
 }
 
 Eigen::VectorXd coordinates(const std::vector<double>& unit, std::size_t first, std::size_t count) {
@@ -148,7 +161,7 @@ std::vector<PlannedRun> design_of(const ModelSpace& space, const SimulationCount
           read_piles(space, counts, {before, e}, (counts.effect + 1) / 2, runs);
       continue;
     }
-    seed = kEffectSeeds + own % 100 * kSeedsOfOneEffect;
+    seed = kEffectSeeds + seed_block(effect.name) * kSeedsOfOneEffect;
     auto points = latin_hypercube(counts.effect, static_cast<int>(p + others), own);
     for (int k = 0; k < counts.effect; ++k) {
       const auto& unit = points[static_cast<std::size_t>(k)];

@@ -79,7 +79,7 @@ void FileReader::integer(const YamlNode& map, const char* key, int least, int mo
 std::vector<std::uint64_t> FileReader::seeds(const YamlNode& list) {
   std::vector<std::uint64_t> seeds;
   for (const YamlNode& item : list.items) {
-    const auto seed = whole(item, "seeds", 0, 9007199254740991.0);  // 2^53 - 1: a double is exact up to it
+    const auto seed = whole(item, "seeds", 0, kLargestSeed);
     if (!seed) continue;
     if (std::find(seeds.begin(), seeds.end(), *seed) != seeds.end())
       fail(item.place, fmt::format("seeds: {} stands twice", *seed));

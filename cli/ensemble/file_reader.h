@@ -1,5 +1,6 @@
 #pragma once
-// What the readers of sweep and calibration files share: values of a YAML tree, and what is wrong with them.
+// What the readers of files beside scenarios share (sweeps, calibrations, studies, models, datasets): values
+// of a YAML tree, and what is wrong with them.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -23,12 +24,16 @@ class FileReader {
   const YamlNode* map_at(const YamlNode& parent, const char* key, bool required, const char* what);
   /// The list at a key, with an entry at least.
   const YamlNode* list_at(const YamlNode& parent, const char* key, bool required, const char* what);
+  /// The text, or the number, of a node; nothing, with an error that names `key`, if it is none.
   std::optional<std::string> scalar(const YamlNode& node, const std::string& key);
   std::optional<double> number(const YamlNode& node, const std::string& key);
+  /// An integer within bounds.
   std::optional<std::uint64_t> whole(const YamlNode& node, const std::string& key, double least, double most);
   /// Sets `value` where the map has the key.
   void integer(const YamlNode& map, const char* key, int least, int most, int& value);
-  /// Distinct integers.
+  /// Of lists of seeds and of designs: 2^53 - 1, up to which a double is exact.
+  static constexpr double kLargestSeed = 9007199254740991.0;
+  /// Distinct integers from 0 to kLargestSeed.
   std::vector<std::uint64_t> seeds(const YamlNode& list);
 
   /// A key whose value lies between two numbers.

@@ -90,6 +90,9 @@ void read_experiments(const YamlNode& root, const fs::path& file, const fs::path
         const std::string output = reader.scalar(item, "observables").value_or("");
         if (const std::string why = why_not_measured(here.experiment.scenario, output); !why.empty())
           reader.fail(item.place, fmt::format("observables: {}: {}", shown(output), why));
+        else if (std::find(here.observables.begin(), here.observables.end(), output) !=
+                 here.observables.end())
+          reader.fail(item.place, fmt::format("observables: {} stands twice", output));
         else
           here.observables.push_back(output);
       }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "sim/scene/yaml_tree.h"
+
 namespace scree {
 namespace {
 
@@ -53,10 +55,11 @@ std::string scenario_patch(const fs::path& scenario, const fs::path& from,
                            const std::vector<std::string>& comment) {
   std::string text;
   for (const std::string& line : comment) text += "# " + line + "\n";
-  text += fmt::format("extends: {}\n", fs::absolute(scenario)
-                                           .lexically_normal()
-                                           .lexically_relative(fs::absolute(from).lexically_normal())
-                                           .generic_string());
+  text +=
+      fmt::format("extends: {}\n", yaml_text(fs::absolute(scenario)
+                                                 .lexically_normal()
+                                                 .lexically_relative(fs::absolute(from).lexically_normal())
+                                                 .generic_string()));
   return text + nested_yaml(overrides);
 }
 

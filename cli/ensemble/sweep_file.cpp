@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostPoints = 100'000;
 
-// The points of a design, written into the sweep.
+// These write the points of a design into the sweep.
 
 void read_grid(const YamlNode& design, Sweep& sweep, FileReader& reader) {
   reader.allow(design, {"type", "parameters"}, " in a grid");
@@ -101,7 +101,8 @@ void read_random(const YamlNode& design, bool is_sobol, Sweep& sweep, FileReader
   if (parameters == nullptr || points == nullptr) return;
   const auto count = reader.whole(points->value, "points", 1, static_cast<double>(kMostPoints));
   std::uint64_t seed = 1;
-  if (seed_entry != nullptr) seed = reader.whole(seed_entry->value, "seed", 0, kLargestSeed).value_or(seed);
+  if (seed_entry != nullptr)
+    seed = reader.whole(seed_entry->value, "seed", 0, FileReader::kLargestSeed).value_or(seed);
   const std::vector<FileReader::Span> spans = reader.spans(*parameters);
   for (const FileReader::Span& span : spans) sweep.parameters.push_back(span.key);
   if (!count || !reader.good()) return;
@@ -173,6 +174,9 @@ SweepResult load_sweep(const fs::path& file, const fs::path& asset_dir) {
     ScenarioResult loaded = load_scenario(*scenario, overrides_of(variation, sweep.parameters, point.values),
                                           asset_dir, ReadFor::numbers);
     point.scenario = std::move(loaded.scenario);
+    for (std::string& warning : loaded.warnings)
+      if (std::find(result.warnings.begin(), result.warnings.end(), warning) == result.warnings.end())
+        result.warnings.push_back(std::move(warning));
     if (loaded.errors.empty()) continue;
     // Other points are wrong in the same way, most likely.
     for (const ScenarioError& error : loaded.errors)

@@ -29,7 +29,7 @@ struct Sweep {
 struct SweepResult {
   Sweep sweep;
   std::vector<ScenarioError> errors;
-  std::vector<std::string> warnings;  ///< a line each; of load_cases
+  std::vector<std::string> warnings;  ///< a line each, of all points
 };
 
 /// Reads a sweep file:

@@ -6,7 +6,8 @@
 namespace scree {
 
 struct ContactEffects {
-  /// Contacts that are closed pull with 2 pi `surface_energy` Rbar (J/m2).
+  /// Contacts that are closed pull with 2 pi `surface_energy` Rbar (J/m2): the work of adhesion of both
+  /// faces.
   double surface_energy = 0;
   /// Twisting resistance: moment about the normal, at most mu_t Rbar Fn.
   double mu_t = 0;

@@ -9,12 +9,14 @@ Effect breakage() {
       .doc = "Blocks that fall far or hit each other hard break, large ones sooner than small ones.",
       .equation =
           "A grain breaks when the energy that one of its contacts stores in it passes m (d / D50)^-exponent "
-          "/ fragility: kn u^2 / 2 on a plane, half of that in a contact of two spheres. So a grain that "
-          "hits a floor at v breaks from v^2 / 2 > (1 + alpha) (d / D50)^-exponent / fragility on, alpha the "
+          "/ fragility: kn u^2 / 2 on a plane, half of that in a contact of two spheres, because the other, "
+          "a "
+          "fixed ball of a base layer too, is as soft. So a grain that hits a plane floor at v breaks from "
+          "v^2 / 2 > (1 + alpha) (d / D50)^-exponent / fragility on, alpha the "
           "local damping (0.4), which takes its share on the way in. In its place stand four equal "
           "fragments, a quarter of its mass each, at the corners of a tetrahedron inside it, with its "
-          "velocity and spin; they grow by 1 % at a time, with 10 stable steps of the smallest grain "
-          "between, until their volumes add up to that of the grain. Fragments do not break while they "
+          "velocity and angular momentum; each grows by 1 % of its radius in 3 sqrt(m / kn), some 10 cm/s, "
+          "until their volumes add up to that of the grain. Fragments do not break while they "
           "grow, and grains whose fragments would be finer than the grading do not break. A load at rest "
           "counts like an impact; soft spheres (1 MPa) store more of it than rock does. The scatter of "
           "strength is left out. A trajectory has no rows for fragments: output.trajectory must be false.",

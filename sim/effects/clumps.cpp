@@ -13,7 +13,8 @@ Effect clumps() {
       .equation =
           "A grain of diameter d is a rigid clump of two equal spheres whose middles lie elongation of their "
           "diameter apart; the two together fill the grain's volume: their diameter is d (1 + 1.5 e - 0.5 "
-          "e^3)^(-1/3). Each has half of the mass. Contacts are those of the spheres, with their radius in "
+          "e^3)^(-1/3). It is of one density: its moments of inertia are those of the two spheres' union. "
+          "Contacts are those of the spheres, with their radius in "
           "stiffness and rolling limit; a grain that another touches with both of its spheres has two "
           "contacts "
           "for one. The middle moves by the sum of the forces, the grain turns by the moment about its "

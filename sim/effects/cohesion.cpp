@@ -13,7 +13,9 @@ Effect cohesion() {
           "strong that is beside weight, not what holds: `scree validate` and `scree run` print gamma and "
           "the pull in newtons.",
       .equation =
-          "A closed contact pulls with F = 2 pi gamma Rbar; gamma is such that two grains of D50 pull each "
+          "A closed contact pulls with F = 2 pi gamma Rbar. gamma is the work of adhesion per area, twice "
+          "the "
+          "surface energy of each face; it is such that two grains of D50 pull each "
           "other with bond_number times their weight. Friction limits stay those of the spring force, F + "
           "Fn. With Rbar = D50 / 4 that is gamma = bond_number rho g D50^2 / 3: bond number 1 of rock of "
           "2760 kg/m3 is gamma = 0.009 J/m2 at D50 = 1 mm, 0.9 J/m2 at 10 mm, 23 J/m2 at 50 mm and 1750 "

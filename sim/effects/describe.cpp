@@ -16,7 +16,8 @@ Named pieces of physics, or of the measurement, that the base model lacks. A sce
 or a run with `--set effects.cohesion.bond_number=0.5`. Parameters that are left out have their standard value. At the amplitude that
 means absent (the first parameter; 0, or 1 for a factor) a run gives the same numbers as without the effect, bit by bit.
 
-Each is a file in `sim/effects/` and a line in its registry; `tests/verification/` holds each against a formula. Effects on the motion need the engine rrlinear.
+Each is a file in `sim/effects/` and a line in its registry; tests hold each against a formula where there is one (`tests/verification/`,
+`tests/scene/`). Effects on the motion need the engine rrlinear.
 D50 is that of the scenario's grading, or the size that `effects.reference.diameter_m` gives, so that an effect means the same in rock of
 several gradings. The prior is the range in which a diagnosis looks. The pictures show real runs of three seeds, made by
 `docs/pictures/effects/make.sh`: heaps of 15 kg of laboratory rock, or a load of 20 t over a bench of 4 m in three sections. They show what

@@ -13,7 +13,7 @@ Effect detection_limit() {
           "at the limit, a smooth step. It acts on the gradings of sections, rings and cells and on the rock "
           "as dumped, which is measured likewise; masses and angles stay true.",
       .source =
-          "Sanchidrian, Segarra, Ansell & Moser, Rock Mech. Rock Eng. 42 (2009): image analysis of rock "
+          "Sanchidrián, Segarra, Ouchterlony & López, Rock Mech. Rock Eng. 42 (2009): image analysis of rock "
           "fragmentation fails in the fines.",
       .parameters = {{.key = "ratio",
                       .unit = "",

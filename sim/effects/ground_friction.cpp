@@ -11,8 +11,8 @@ Effect ground_friction() {
           "mu and mu_r of contacts with floor, bench, wall and the fixed balls of a base layer are times "
           "factor.",
       .source =
-          "Measured wall friction of plates against rockfill differs from that of the rock: Potyondy, "
-          "Geotechnique 11 (1961), interface to internal friction 0.5 to 1.",
+          "Potyondy, Geotechnique 11 (1961): friction of soils against steel, wood and concrete, 0.5 to 1 of "
+          "their internal friction.",
       .parameters = {{.key = "factor",
                       .unit = "",
                       .low = 0,

@@ -13,7 +13,7 @@ Effect image_blur() {
           "wider, and with the spread of the rock "
           "as dumped, which is measured likewise, chi becomes smaller.",
       .source =
-          "Maerz & Zhou, Fragblast 2 (1998): fusion and disintegration of grains in images; Sanchidrian et "
+          "Maerz & Zhou, Fragblast 2 (1998): fusion and disintegration of grains in images; Sanchidrián et "
           "al., Rock Mech. Rock Eng. 42 (2009): errors of some 30 % in the coarse part.",
       .parameters = {{.key = "width",
                       .unit = "",

@@ -6,7 +6,9 @@ Effect release_speed() {
   return {
       .name = "release_speed",
       .title = "load that leaves the bed at speed",
-      .doc = "A bed that is hoisted throws its load out; in the base model a gate opens before rock at rest.",
+      .doc =
+          "A bed that is hoisted throws its load out; in the base model a gate opens before rock that has "
+          "settled for a second.",
       .equation = "When the gate opens, all grains of the load move along the bed with this speed.",
       .source = "Hoisted and gated dumping compared in scenarios/hoist_dump.yaml.",
       .parameters = {{.key = "speed_m_per_s",

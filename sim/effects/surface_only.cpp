@@ -16,9 +16,8 @@ Effect surface_only() {
           "stay "
           "true. The rock as dumped is measured through and through.",
       .source =
-          "Gradings of the thesis's slopes are those of photographs (chapter 3); Sanchidrian, Segarra, "
-          "Ansell "
-          "and Moser, Rock Mech. Rock Eng. 42 (2009): images sample surfaces.",
+          "Gradings of the thesis's slopes are those of photographs (chapter 3); Sanchidrián, Segarra, "
+          "Ouchterlony & López, Rock Mech. Rock Eng. 42 (2009): images sample surfaces.",
       .parameters = {{.key = "share",
                       .unit = "",
                       .low = 0,

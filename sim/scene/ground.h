@@ -31,12 +31,12 @@ TriangleMesh make_bench(const BenchSpec& bench);
 /// stands out above the top.
 std::vector<NewSphere> make_base_layer(const BenchSpec& bench, std::uint64_t seed);
 
-/// About how many balls a layer has on a surface of this area (m2).
-double estimated_balls(double area, BaseLayer layer, double diameter);
-
 /// The same on a square floor at z = 0 from -half_width to half_width.
 std::vector<NewSphere> make_floor_layer(double half_width, BaseLayer layer, double diameter,
                                         std::uint64_t seed);
+
+/// About how many balls a layer has on a surface of this area (m2).
+double estimated_balls(double area, BaseLayer layer, double diameter);
 
 /// A tube about the z axis, closed as a solid: inner radius of the inscribed circle, from z = low to high
 /// (m).

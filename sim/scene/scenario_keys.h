@@ -2,6 +2,7 @@
 // The one table of a scenario file's keys. Reading, checking, the JSON schema and the resolved YAML are all
 // loops over it, so a key's name, unit, range and meaning are said once (in scenario_keys.cpp) and its
 // default once (in the struct).
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <string>
@@ -135,7 +136,8 @@ struct Field {
 /// The table of all keys, bound to a scenario; valid as long as the scenario stays where it is.
 Fields scenario_keys(Scenario& scenario);
 
-inline constexpr double kLargestSeed = 9223372036854775807.0;  // 2^63 - 1, for messages and the schema
+/// Of a scenario: 2^63 - 1.
+inline constexpr std::uint64_t kLargestSeed = 9223372036854775807;
 
 /// Visitor of a variant made of lambdas.
 template <class... F>

@@ -236,11 +236,11 @@ class Reader {
     const auto [stop, failure] =
         std::from_chars(node.text.data() + (node.text[0] == '+' ? 1 : 0), end, value);
     const bool fits = failure == std::errc() && stop == end &&
-                      (std::is_same_v<Int, std::uint64_t> ? value <= static_cast<Int>(INT64_MAX)
+                      (std::is_same_v<Int, std::uint64_t> ? value <= static_cast<Int>(kLargestSeed)
                                                           : range.holds(static_cast<double>(value)));
     if (!fits) {
       const std::string limits =
-          std::is_same_v<Int, std::uint64_t> ? fmt::format("0 to {}", INT64_MAX) : range_text(range, "");
+          std::is_same_v<Int, std::uint64_t> ? fmt::format("0 to {}", kLargestSeed) : range_text(range, "");
       fail(node.place, address, path,
            fmt::format("{} is out of range; allowed {}", node.text.substr(0, 40), limits));
       return std::nullopt;

@@ -75,7 +75,7 @@ struct TargetSchema {
     return with_default(list_of(ranged("integer", t.range), t.count), *t.value);
   }
   Json operator()(const Seeds& t) const {
-    Json out = list_of({{"type", "integer"}, {"minimum", 0}, {"maximum", INT64_MAX}}, t.count);
+    Json out = list_of({{"type", "integer"}, {"minimum", 0}, {"maximum", kLargestSeed}}, t.count);
     out["uniqueItems"] = true;
     return with_default(std::move(out), *t.value);
   }

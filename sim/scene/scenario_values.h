@@ -19,7 +19,7 @@ std::string found(const YamlNode& node);
 /// " (did you mean 'height_m'?)" or nothing.
 std::string suggestion(std::string_view word, const std::vector<std::string>& allowed);
 
-/// "0.1 to 200 m", "more than 0, at most 1", "0 to less than 1".
+/// "0.1 to 200 m", "more than 0 to 1", "0 to less than 1".
 std::string range_text(const Range& range, std::string_view unit);
 
 std::string join(const std::vector<std::string>& words);

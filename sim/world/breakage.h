@@ -24,8 +24,8 @@ struct Breakage {
   static constexpr double kSize = 0.62996052494743658;
   /// Its radius at first over that of the sphere: 1 / (1 + sqrt(3/2)), the largest of four that fit.
   static constexpr double kSizeAtFirst = 0.44948974278317809;
-  static constexpr double kGrowth = 1.01;       ///< of the radius, in kGrowthSteps
-  static constexpr double kGrowthSteps = 10.0;  ///< free steps of the fragment, sqrt(m / k)
+  static constexpr double kGrowth = 1.01;      ///< of the radius, in kGrowthSteps
+  static constexpr double kGrowthSteps = 3.0;  ///< free steps of the fragment, sqrt(m / k)
 
   /// Spin of the fragments over that of the sphere: four balls of a quarter of its mass each, rho =
   /// 1 - kSizeAtFirst off its middle, have 2/3 rho^2 + 0.4 kSizeAtFirst^2 of its mass and radius squared

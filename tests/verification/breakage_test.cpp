@@ -126,7 +126,7 @@ TEST(Breakage, KeepsAngularMomentum) {
   EXPECT_LT((angular() - before).norm(), 1e-6 * before.norm());
 }
 
-// How fast fragments grow is theirs: 1 % of the radius in ten times sqrt(m / k), whatever the time step and
+// How fast fragments grow is theirs: 1 % of the radius in three times sqrt(m / k), whatever the time step and
 // the finest rock around. From kSizeAtFirst to kSize in ln(0.630 / 0.449) / ln(1.01) = 33.9 of these.
 TEST(Breakage, FragmentsGrowAtTheirOwnPace) {
   for (const double dt : {kDt, kDt / 4})
@@ -139,7 +139,7 @@ TEST(Breakage, FragmentsGrowAtTheirOwnPace) {
       while (world.statistics().broken_spheres == 0 && world.time() < 0.01) step(world);
       const double begin = world.time(), grown = kRadius * Breakage::kSize,
                    mass = ball_mass(world.settings().material, kRadius) / 4;
-      const double pace = 10 * std::sqrt(mass / pair_stiffness(world.settings().material, grown, grown));
+      const double pace = 3 * std::sqrt(mass / pair_stiffness(world.settings().material, grown, grown));
       const auto largest = [&] {
         double r = 0;
         for (const Grain& g : world.snapshot().grains)
