@@ -502,7 +502,7 @@ TEST(ScenarioPatch, NestsKeysAndNamesTheFileFromWhereItLies) {
   EXPECT_EQ(scenario_patch("/data/scenarios/a.yaml", "/data/runs/x",
                            {"material.mu=0.3", "effects.cohesion.bond_number=1", "material.mu_r=0.2"},
                            {"What it is."}),
-            "# What it is.\nextends: ../../scenarios/a.yaml\nmaterial:\n  mu: 0.3\n  mu_r: 0.2\neffects:\n  "
+            "# What it is.\nextends: \"../../scenarios/a.yaml\"\nmaterial:\n  mu: 0.3\n  mu_r: 0.2\neffects:\n  "
             "cohesion:\n    bond_number: 1\n");
 }
 
