@@ -352,6 +352,7 @@ int run_calibrate(const CalibrateOptions& options) {
   fmt::print("\nresult: {}, material for `extends`: {}\n", (out / "calibration.json").string(),
              (out / "material.yaml").string());
   draw_picture(spec, result, answer, out / "calibration.svg");
+  if (fs::exists(out / "calibration.svg")) fmt::print("picture: {}\n", (out / "calibration.svg").string());
   const bool met = std::all_of(answer.missed_by.begin(), answer.missed_by.end(),
                                [](double by) { return std::abs(by) <= kMissed; });
   return met ? kOk : kFailed;

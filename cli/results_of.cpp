@@ -20,6 +20,7 @@
 
 namespace scree {
 namespace {
+constexpr double kMuchBeyondHeap = 0.1;  // of the mass: a reader is told
 constexpr double kOverlapWarning =
     0.10;                         // of the smaller radius; physics of soft spheres beyond it is doubtful
 constexpr double kHalfWidth = 4;  // of the section through a pile, m: half a truck bed or blade
@@ -224,9 +225,11 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
       result.notes.push_back(fmt::format("seed {}: {}", s.seed, why));
     if (bench_of(scenario) && s.slope_angle && lies_thin(s))
       result.notes.push_back(fmt::format(
-          "seed {}: the rock lies {} times its D50 thick on the face of the bench: its slope is the face's "
-          "more than its own",
-          s.seed, decimals_text(std::max(s.slope_cover, 0.0), 1)));
+          "seed {}: over the middle of the bench's face the rock lies {} thick on average, five grains (D50) "
+          "are needed: its slope is the face's more than its own",
+          s.seed,
+          s.slope_cover < 1 ? std::string("less than a grain")
+                            : decimals_text(s.slope_cover, 1) + " grains"));
     if (s.interrupted)
       result.notes.push_back(fmt::format("seed {} was ended by the user: its pile is not finished", s.seed));
     else if (std::holds_alternative<BucketDump>(scenario.experiment) && s.sections.empty())
@@ -234,6 +237,12 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
           fmt::format("seed {}: no cone can be fitted to the heap, and so it has no sections; more or larger "
                       "buckets may help",
                       s.seed));
+    if (s.heap && s.repose && s.heap->rings.mass_outside > kMuchBeyondHeap * s.mass)
+      result.notes.push_back(fmt::format(
+          "seed {}: {:.0f} % of the rock, {:.0f} grains, lie beyond the heap's radius R = {} m, out to which "
+          "grains touch: its rings and angles are those of the rest",
+          s.seed, 100 * s.heap->rings.mass_outside / s.mass, s.repose->runaways,
+          decimals_text(s.repose->radius, 2)));
     if (const std::string why = why_no_repose_angle(s); !why.empty())
       result.notes.push_back(fmt::format("seed {}: no repose angle: {}", s.seed, why));
   }

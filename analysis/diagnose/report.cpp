@@ -285,7 +285,9 @@ std::string gaps_table(const DiagnosisOutcome& o) {
       "at "
       "the best fit, with what was fitted taken off the numbers, and what surfaces do not know added to the "
       "uncertainty. By full simulations: their mean over seeds at the values simulated; all numbers count as "
-      "free, because these simulations were not fitted.</p>\n<div class=\"wide\"><table><thead><tr><th "
+      "free, because these simulations were not fitted. p allows for scatter that is known from few repeats "
+      "only (Fisher's "
+      "F).</p>\n<div class=\"wide\"><table><thead><tr><th "
       "class=\"word\">Model</th><th>Surfaces: chi-square</th><th>p</th><th>Simulations: chi-square</th>"
       "<th>p</th><th>Seeds</th></tr></thead><tbody>\n{}</tbody></table></div>\n",
       rows);
@@ -345,7 +347,10 @@ std::string where_tables(const Diagnosis& d) {
       "<h2>Where the nominal model disagrees</h2>\n<p>By the fitted surfaces. Shaded: not by chance, with "
       "{:.0f} % of false alarms "
       "among the "
-      "shaded at most to be expected.</p>\n<div class=\"wide\"><table><thead><tr><th class=\"word\">Part</th>"
+      "shaded at most to be expected. Where scatter is known from few repeats only, p is that of Student's t "
+      "or "
+      "Fisher's F and larger than chi-square alone would give.</p>\n<div "
+      "class=\"wide\"><table><thead><tr><th class=\"word\">Part</th>"
       "<th>chi-square</th><th>p</th></tr></thead><tbody>\n{}</tbody></table></div>\n",
       100 * kFalseDiscoveries, parts);
 }

@@ -198,8 +198,8 @@ std::optional<Picture> draw_chi_fit(const FieldAnalysis& field, const fs::path& 
         blocks += fmt::format("{} {}\n", x[i], section.values.at(quantity)[i]);
     blocks += "END\n";
     return fmt::format(
-        "set title '{0}: {1:.3f} x, R² {2:.2f}, about the mean {3:.2f}' offset 0,-0.6 font ',11'\n"
-        "set xlabel 'D90 / D15 of the rock as dumped' offset 0,0.6\nset ylabel 'χ' offset 1.5,0\nset yrange "
+        "set title '{0}: {1:.3f} x, R² {2:.2f}, about the mean {3:.2f}' offset 0,-0.6 font ',10'\n"
+        "set xlabel 'D90 / D15 of the rock as dumped' offset 0,0.6\nset ylabel 'χ' offset 0.4,0\nset yrange "
         "[{4}:{5}]\n"
         "plot 0 with lines lc rgb '#888888', ${0} using 1:2 with points pt 7 ps 0.5 lc rgb '{6}', {1}*x with "
         "lines lw 1.6 lc rgb '{7}'\n",
@@ -249,9 +249,9 @@ std::optional<Picture> draw_ksat(const FieldAnalysis& field, const fs::path& fol
   std::string script =
       chart_terminal(over ? kWidth : kWidth / 2, 430) + data +
       fmt::format(
-          "set multiplot layout 1,{} margins {},0.98,0.15,0.9 spacing 0.1\nset logscale y\nset format y "
+          "set multiplot layout 1,{} margins {},0.98,0.15,0.9 spacing 0.12\nset logscale y\nset format y "
           "'%g'\nset grid\n",
-          over ? 2 : 1, over ? 0.08 : 0.16);
+          over ? 2 : 1, over ? 0.11 : 0.2);
   script += fmt::format(
       "set title {}\nset xlabel 'x/L along the slope (0 crest, 1 toe)'\nset ylabel 'over that of the rock as "
       "dumped'\nset xrange [0:1]\nset key top left reverse Left\n",

@@ -218,9 +218,15 @@ std::vector<std::string> field_in_words(const FieldAnalysis& field, const std::v
   for (const auto& [name, words] :
        {std::pair{"ksat_kcm_rel", "Kozeny-Carman"}, std::pair{"ksat_taylor_rel", "Taylor"}}) {
     const Spread s = spread_over(ratio_over_pictures(toe, crest, name));
-    if (s.moments.n > 0)
-      lines.push_back(fmt::format("conductivity of {} over {} by {}: {:.2g} to {:.3g}, median {:.2g}",
-                                  toe.name, crest.name, words, s.min, s.max, s.median));
+    if (s.moments.n == 0) continue;
+    const std::string filled = std::string(name) + "_filled";
+    const Spread with =
+        field.options.sieved ? spread_over(ratio_over_pictures(toe, crest, filled)) : Spread{};
+    lines.push_back(fmt::format(
+        "conductivity of {} over {} by {}, as seen: {:.2g} to {:.3g}, median {:.2g}{}", toe.name, crest.name,
+        words, s.min, s.max, s.median,
+        with.moments.n > 0 ? fmt::format("; with the fines that pictures miss: median {:.3g}", with.median)
+                           : std::string()));
   }
   const Grading *seen = field.whole.curve(CurveKind::medians, false),
                 *filled = field.whole.curve(CurveKind::medians, true);

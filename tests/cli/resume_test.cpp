@@ -349,8 +349,7 @@ TEST_F(ResumeCli, FullDiskIsOneMessageAndLeavesWhatWasWritten) {
   expect_same("whole", "run");
 
   // kB of address space; wherever the program is when there is no more.
-  for (const char* limit :
-       {"62000", "64000", "66000", "72000", "80000", "84000", "88000", "92000", "96000"}) {
+  for (const char* limit : {"62000", "64000", "66000", "70000", "72000", "76000", "80000", "82000", "84000"}) {
     const Called starved =
         limited(std::string("ulimit -v ") + limit, joined(words(in_folder(limit), 1, "0")));
     EXPECT_EQ(starved.code, 1) << limit << ": " << starved.text;
