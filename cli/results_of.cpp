@@ -238,11 +238,11 @@ RunResult put_together(const Scenario& scenario, std::vector<SeedResult> seeds,
                       "buckets may help",
                       s.seed));
     if (s.heap && s.repose && s.heap->rings.mass_outside > kMuchBeyondHeap * s.mass)
-      result.notes.push_back(fmt::format(
-          "seed {}: {:.0f} % of the rock, {:.0f} grains, lie beyond the heap's radius R = {} m, out to which "
-          "grains touch: its rings and angles are those of the rest",
-          s.seed, 100 * s.heap->rings.mass_outside / s.mass, s.repose->runaways,
-          decimals_text(s.repose->radius, 2)));
+      result.notes.push_back(
+          fmt::format("seed {}: {:.0f} % of the rock lies beyond the heap's radius R = {} m, out to which "
+                      "grains touch: its "
+                      "rings leave it out, the slope of the flank does not",
+                      s.seed, 100 * s.heap->rings.mass_outside / s.mass, decimals_text(s.repose->radius, 2)));
     if (const std::string why = why_no_repose_angle(s); !why.empty())
       result.notes.push_back(fmt::format("seed {}: no repose angle: {}", s.seed, why));
   }

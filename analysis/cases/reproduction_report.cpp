@@ -107,8 +107,8 @@ const char* style_of(TrendVerdict verdict) {
       return "agrees";
     case TrendVerdict::opposite:
     case TrendVerdict::beyond:
-    case TrendVerdict::not_seen:
       return "differs";
+    case TrendVerdict::not_seen:  // the scatter of the printed value is not in it
     case TrendVerdict::undecided:
     case TrendVerdict::unknown:
       break;

@@ -69,7 +69,7 @@ const char* in_words(TrendVerdict verdict) {
     case TrendVerdict::beyond:
       return "beyond the bound";
     case TrendVerdict::not_seen:
-      return "none seen, and the printed one lies outside the interval";
+      return "none seen; the printed one, taken as exact, lies outside the interval";
     case TrendVerdict::undecided:
       return "not decided by these seeds";
     case TrendVerdict::unknown:
@@ -123,7 +123,8 @@ ReproductionWords reproduction_in_words(const std::vector<CaseResult>& cases,
   if (!trends.empty())
     words.counts.push_back(fmt::format(
         "of {} printed differences between cases {} agree in direction and size, {} in direction alone, {} "
-        "bounds are kept; {} go the other way, {} are not seen though these seeds would show them, {} "
+        "bounds are kept; {} go the other way, {} are not seen and their printed size, taken as exact, lies "
+        "outside the interval, {} "
         "broken; {} are not decided by these seeds, {} not judged",
         trends.size(), verdicts[TrendVerdict::agrees], verdicts[TrendVerdict::other_size],
         verdicts[TrendVerdict::within], verdicts[TrendVerdict::opposite], verdicts[TrendVerdict::not_seen],
