@@ -122,16 +122,17 @@ std::string material_file(const scree::CalibrationSpec& spec, const scree::Calib
   return text + scree::nested_yaml(others);
 }
 
-void draw_picture(const scree::CalibrationSpec& spec, const scree::CalibrationResult& result,
+// False: more parameters than a picture shows.
+bool draw_picture(const scree::CalibrationSpec& spec, const scree::CalibrationResult& result,
                   const scree::CalibrationAnswer& answer, const fs::path& file) {
   const auto& target = spec.targets[0];
   if (answer.map) {
     scree::draw(scree::ContourMap{spec.name, spec.parameters[0].key, spec.parameters[1].key, target.output,
                                   *answer.map, std::nullopt, target.value},
                 file);
-    return;
+    return true;
   }
-  if (spec.parameters.size() != 1) return;
+  if (spec.parameters.size() != 1) return false;
   scree::CalibrationChart chart;
   chart.title = spec.name;
   chart.x_label = spec.parameters[0].key;
@@ -150,6 +151,7 @@ void draw_picture(const scree::CalibrationSpec& spec, const scree::CalibrationRe
   chart.target = target.value, chart.uncertainty = target.uncertainty;
   chart.best = answer.value[0], chart.interval = answer.interval[0];
   scree::draw(chart, file);
+  return true;
 }
 
 void write_tables(const scree::CalibrationSpec& spec, const scree::CalibrationResult& result,
@@ -351,8 +353,8 @@ int run_calibrate(const CalibrateOptions& options) {
   print_answer(spec, result, answer);
   fmt::print("\nresult: {}, material for `extends`: {}\n", (out / "calibration.json").string(),
              (out / "material.yaml").string());
-  draw_picture(spec, result, answer, out / "calibration.svg");
-  if (fs::exists(out / "calibration.svg")) fmt::print("picture: {}\n", (out / "calibration.svg").string());
+  const fs::path picture = out / "calibration.svg";
+  if (draw_picture(spec, result, answer, picture)) fmt::print("picture: {}\n", picture.string());
   const bool met = std::all_of(answer.missed_by.begin(), answer.missed_by.end(),
                                [](double by) { return std::abs(by) <= kMissed; });
   return met ? kOk : kFailed;

@@ -73,7 +73,11 @@ struct VelocityTrend {
 /// Of chi and the D50 ratio at the crest; none unless there are three velocities.
 std::vector<VelocityTrend> velocity_trends(const std::vector<CaseResult>& cases);
 
-const char* in_words(TrendVerdict verdict);
+/// How a report shows a verdict: the class of the cell, and words.
+struct TrendLook {
+  const char *style, *words;
+};
+TrendLook look(TrendVerdict verdict);
 
 /// What a difference with its interval and its p says of a printed one that is no bound.
 TrendVerdict judged(double difference, double low, double high, double p, double printed);

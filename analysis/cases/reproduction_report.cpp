@@ -98,24 +98,6 @@ std::string signs_table(const std::vector<CaseResult>& cases) {
          rows + "</tbody></table></div>\n";
 }
 
-const char* style_of(TrendVerdict verdict) {
-  switch (verdict) {
-    case TrendVerdict::agrees:
-    case TrendVerdict::within:
-      return "close";
-    case TrendVerdict::other_size:
-      return "agrees";
-    case TrendVerdict::opposite:
-    case TrendVerdict::beyond:
-      return "differs";
-    case TrendVerdict::not_seen:  // the scatter of the printed value is not in it
-    case TrendVerdict::undecided:
-    case TrendVerdict::unknown:
-      break;
-  }
-  return "unknown";
-}
-
 std::string velocity_table(const std::vector<CaseResult>& cases) {
   std::string rows;
   for (const VelocityTrend& each : velocity_trends(cases))
@@ -126,8 +108,8 @@ std::string velocity_table(const std::vector<CaseResult>& cases) {
         html_escaped(quantity_in_words(each.value.quantity)), each.value.section, each.runs,
         decimals_text(each.here.slope, 2), decimals_text(each.here.low, 2), decimals_text(each.here.high, 2),
         html_escaped(p_text(each.here.p)), html_escaped(p_text(each.order.p)),
-        decimals_text(each.printed_slope, 2), each.printed.size(), style_of(each.verdict),
-        in_words(each.verdict));
+        decimals_text(each.printed_slope, 2), each.printed.size(), look(each.verdict).style,
+        look(each.verdict).words);
   if (rows.empty()) return rows;
   return "<h2>Velocity of the blade</h2>\n<p>Least squares over all seeds of all cases of push dumping, with "
          "the 95 % interval of the slope and p of no slope (t, n − 2 degrees of freedom); p of no order by "
@@ -168,8 +150,8 @@ std::string trends_table(const std::vector<TrendComparison>& trends) {
         "{}\">{}</td><td class=\"word\">{}</td></tr>\n",
         html_escaped(t.case_name), html_escaped(t.against), html_escaped(quantity_in_words(t.quantity)),
         html_escaped(t.section), t.bound ? "|·| ≤ " : "", text(t.difference), text(row.difference),
-        text(row.low), text(row.high), html_escaped(p_text(row.p)), style_of(row.verdict),
-        in_words(row.verdict), html_escaped(t.source));
+        text(row.low), text(row.high), html_escaped(p_text(row.p)), look(row.verdict).style,
+        look(row.verdict).words, html_escaped(t.source));
   }
   return out + "</tbody></table></div>\n";
 }

@@ -50,32 +50,32 @@ std::string in_words(const VelocityTrend& trend) {
       p_text(trend.order.p),
       trend.printed.size() > 1
           ? fmt::format("; PFC3D's slope {:+.2f} ({} cases printed): {}", trend.printed_slope,
-                        trend.printed.size(), in_words(trend.verdict))
+                        trend.printed.size(), look(trend.verdict).words)
           : "");
 }
 
 }  // namespace
 
-const char* in_words(TrendVerdict verdict) {
+TrendLook look(TrendVerdict verdict) {
   switch (verdict) {
     case TrendVerdict::agrees:
-      return "same direction and size";
+      return {"close", "same direction and size"};
     case TrendVerdict::other_size:
-      return "same direction, other size";
+      return {"agrees", "same direction, other size"};
     case TrendVerdict::opposite:
-      return "opposite direction";
+      return {"differs", "opposite direction"};
     case TrendVerdict::within:
-      return "within the bound";
+      return {"close", "within the bound"};
     case TrendVerdict::beyond:
-      return "beyond the bound";
-    case TrendVerdict::not_seen:
-      return "none seen; the printed one, taken as exact, lies outside the interval";
+      return {"differs", "beyond the bound"};
+    case TrendVerdict::not_seen:  // the scatter of the printed value is not in it
+      return {"unknown", "none seen; the printed one, taken as exact, lies outside the interval"};
     case TrendVerdict::undecided:
-      return "not decided by these seeds";
+      return {"unknown", "not decided by these seeds"};
     case TrendVerdict::unknown:
       break;
   }
-  return "not judged: two seeds of both are needed";
+  return {"unknown", "not judged: two seeds of both are needed"};
 }
 
 ReproductionWords reproduction_in_words(const std::vector<CaseResult>& cases,

@@ -5,8 +5,9 @@
 namespace scree {
 
 std::string runs_in_words(const std::string& name, const FinishedRuns& runs) {
-  return fmt::format("{}: {} run{} done, {} not run, {} failed, {} left out because they did not come to rest",
-                     name, runs.seeds.size(), runs.seeds.size() == 1 ? "" : "s", runs.missing, runs.failed, runs.restless);
+  return fmt::format(
+      "{}: {} run{} done, {} not run, {} failed, {} left out because they did not come to rest", name,
+      runs.seeds.size(), runs.seeds.size() == 1 ? "" : "s", runs.missing, runs.failed, runs.restless);
 }
 
 MeanStd spread_of(const std::vector<Outputs>& seeds,

@@ -6,6 +6,7 @@
 
 #include "analysis/results/output_units.h"
 #include "cli/ensemble/file_reader.h"
+#include "cli/ensemble/scenario_patch.h"
 #include "sim/io/text_file.h"
 #include "sim/scene/yaml_tree.h"
 
@@ -48,13 +49,11 @@ std::vector<std::string> write_dataset(const DatasetDraft& draft, const fs::path
   if (rows == 0)
     throw std::invalid_argument(
         "no observable scatters between the repeats: there is nothing to write a dataset of");
-  const fs::path from = fs::absolute(folder).lexically_normal();
   std::string yaml =
       fmt::format("title: {}\nsource: {}\nexperiments:\n", yaml_text(draft.title), yaml_text(draft.source));
   for (const DatasetDraft::Experiment& experiment : draft.experiments) {
-    const fs::path scenario = fs::absolute(experiment.scenario).lexically_normal();
     yaml += fmt::format("  {}:\n    scenario: {}\n", yaml_text(experiment.name),
-                        yaml_text(scenario.lexically_relative(from).generic_string()));
+                        relative_yaml_text(experiment.scenario, folder));
     if (!experiment.overrides.empty()) yaml += "    set:\n";
     for (const std::string& text : experiment.overrides) {
       const auto at = text.find('=');

@@ -27,19 +27,20 @@ constexpr double kRivalBy = 20;  // ratio of probabilities up to which a rival i
 constexpr std::size_t kMostRivals = 2;
 constexpr std::size_t kMostNext = 5;  // measurements proposed
 
-// A number from a name (FNV-1a): an effect's design does not depend on which others there are.
-std::uint64_t hash_of(const std::string& name) {
+// A number from a name (FNV-1a): an effect's design does not depend on which others a model looks for.
+std::uint64_t hash_of(std::string_view name) {
   std::uint64_t hash = 0xcbf29ce484222325ull;
   for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
   return hash;
 }
 
 // The block of seeds of an effect's design, one of a hundred: that of its name, or the first behind it that
-// no effect before it in the list has. Rival effects are simulated with other random numbers.
+// no effect before it in the list of all has, so that new effects go to its end. Rival effects are simulated
+// with other random numbers.
 std::uint64_t seed_block(const std::string& name) {
   std::set<std::uint64_t> taken;
   for (const Effect& effect : all_effects()) {
-    std::uint64_t block = hash_of(std::string(effect.name)) % 100;
+    std::uint64_t block = hash_of(effect.name) % 100;
     while (!taken.insert(block).second) block = (block + 1) % 100;
     if (effect.name == name) return block;
   }

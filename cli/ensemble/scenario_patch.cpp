@@ -50,16 +50,19 @@ std::string nested_yaml(const std::vector<std::string>& overrides) {
   return text;
 }
 
+std::string relative_yaml_text(const fs::path& path, const fs::path& from) {
+  return yaml_text(fs::absolute(path)
+                       .lexically_normal()
+                       .lexically_relative(fs::absolute(from).lexically_normal())
+                       .generic_string());
+}
+
 std::string scenario_patch(const fs::path& scenario, const fs::path& from,
                            const std::vector<std::string>& overrides,
                            const std::vector<std::string>& comment) {
   std::string text;
   for (const std::string& line : comment) text += "# " + line + "\n";
-  text +=
-      fmt::format("extends: {}\n", yaml_text(fs::absolute(scenario)
-                                                 .lexically_normal()
-                                                 .lexically_relative(fs::absolute(from).lexically_normal())
-                                                 .generic_string()));
+  text += fmt::format("extends: {}\n", relative_yaml_text(scenario, from));
   return text + nested_yaml(overrides);
 }
 

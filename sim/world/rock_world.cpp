@@ -97,7 +97,7 @@ void RockWorld::add_spheres(const std::vector<NewSphere>& spheres) {
       add_sphere(s, mass, id);
     if (s.fixed) continue;
     for (int i = known; i < spheres_.size(); ++i) {
-      account_.came_moving += kinetic_energy(i);
+      account_.came_moving += spheres_.kinetic_energy(i);
       account_.came_potential += gravity_energy(i);
       account_.weight_times_radius += spheres_.velocity[i].w * settings_.gravity.norm() * spheres_.place[i].w;
     }
@@ -209,18 +209,18 @@ void RockWorld::set_velocity(std::int64_t id, const Vec3& velocity, const Vec3& 
     const Vec3 angular = clump_angular_momentum(settings_.clumps, spin, arm.normalized(),
                                                 spheres_.grain_mass(i), spheres_.place[i].w);
     for (const int k : {i, other}) {
-      account_.set_moving -= kinetic_energy(k);
+      account_.set_moving -= spheres_.kinetic_energy(k);
       spheres_.velocity[k].set(velocity + spin.cross(k == i ? arm : Vec3(-arm)));
       spheres_.spin[k].set(spin);
       spheres_.angular[k].set(angular);
-      account_.set_moving += kinetic_energy(k);
+      account_.set_moving += spheres_.kinetic_energy(k);
     }
     return sphere_pushed(i);
   }
-  account_.set_moving -= kinetic_energy(i);
+  account_.set_moving -= spheres_.kinetic_energy(i);
   spheres_.velocity[i].set(velocity);
   spheres_.spin[i].set(spin);
-  account_.set_moving += kinetic_energy(i);
+  account_.set_moving += spheres_.kinetic_energy(i);
   if (bullet_moves_spheres()) {
     bodies_[static_cast<std::size_t>(id)]->setLinearVelocity(to_bullet(velocity));
     bodies_[static_cast<std::size_t>(id)]->setAngularVelocity(to_bullet(spin));
@@ -290,14 +290,10 @@ Energy RockWorld::energy() const {
   Energy e;
   for (int i = 0; i < spheres_.size(); ++i) {
     if (!is_rock(i)) continue;
-    e.kinetic += kinetic_energy(i);
+    e.kinetic += spheres_.kinetic_energy(i);
     e.potential += gravity_energy(i);
   }
   return e;
-}
-
-double RockWorld::kinetic_energy(int i) const {
-  return spheres_.kinetic_energy(i);
 }
 
 double RockWorld::gravity_energy(int i) const {
@@ -340,7 +336,7 @@ void RockWorld::leave(int index) {
   spheres_.lost[index] = 1;
   drop_body(spheres_.id[index]);
   account_.lost_potential += gravity_energy(index);
-  account_.lost_other += kinetic_energy(index);
+  account_.lost_other += spheres_.kinetic_energy(index);
   spheres_.velocity[index].set(Vec3::Zero());
   spheres_.spin[index].set(Vec3::Zero());
   sphere_lost(index);

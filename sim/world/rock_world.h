@@ -168,7 +168,6 @@ class RockWorld : private BulletParts, public btDiscreteDynamicsWorld {
   /// Whether a sphere (its index) is rock that is in the model: not a fixed ball, and not lost. Where fixed
   /// balls stand among the others is the engine's choice.
   bool is_rock(int sphere) const { return !fixed_[sphere] && !spheres_.lost[sphere]; }
-  double kinetic_energy(int sphere) const;  ///< J
   double gravity_energy(int sphere) const;  ///< potential, against the origin, J
   virtual void sphere_pushed(int) {}
   virtual void mesh_leaves(int) {}

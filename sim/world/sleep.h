@@ -1,13 +1,13 @@
 #pragma once
 // Which spheres sleep, and what wakes them.
 //
-// A sphere falls asleep when it has been quiet for twice 3 sqrt(radius / g): moved by less than kQuietTravel
-// of its radius in either, which is slower than 0.0017 sqrt(radius g), and pulled by less than kQuietPull of
-// its weight. It is looked at in windows of the smallest sphere's. Its place is then frozen; contacts between
-// two sleepers keep their forces and are not computed. Contacts between a sleeper and an awake sphere are:
-// the sleeper remembers the force it has got used to, and wakes when the force of any one contact has changed
-// by more than the tolerance times (its weight + the mean of its contact forces). A sphere near a tool that
-// moves does not sleep.
+// A sphere falls asleep when it has been quiet for twice 3 sqrt(radius / g): slower than kQuietTravel of its
+// radius in one of these, 0.0017 sqrt(radius g), in each of the windows that it is looked at in, which are
+// the smallest sphere's, and pulled by less than kQuietPull of its weight. Its place is then frozen; contacts
+// between two sleepers keep their forces and are not computed. Contacts between a sleeper and an awake sphere
+// are: the sleeper remembers the force it has got used to, and wakes when the force of any one contact has
+// changed by more than the tolerance times (its weight + the mean of its contact forces). A sphere near a
+// tool that moves does not sleep.
 //
 // Whatever is done every step goes over the lists kept here, not over all spheres.
 #include <algorithm>

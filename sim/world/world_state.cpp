@@ -162,7 +162,7 @@ void RockWorld::shared_state(Stream& stream) {
 template <class Stream>
 void RrlinearWorld::state(Stream& stream) {
   shared_state(stream);
-  stream.section("rrlinear", 2);
+  stream.section("rrlinear", 3);
   stream(changed_, repair_due_, dt_, smallest_radius_, longest_step_, last_dt_, steps_to_check_,
          checks_to_energy_, energy_watch_, friction_, watched_, growing_, bears_, last_growth_, blocks_due_,
          pairs_, facets_, sleep_, sorted_spheres_, before_fragments_);
