@@ -45,15 +45,18 @@ struct Trend {
   std::string source;
 };
 
+/// PFC3D's printed mean of `value` in a case, with deviation (NaN when not printed) and number of repeats (0
+/// when not stated). None if the mean is not printed or nothing of the case was compared.
+std::optional<MeanStd> printed_mean(const CaseResult& result, const PileValue& value);
+
 /// What seeds can say of a printed difference.
 enum class TrendVerdict {
   unknown,     ///< fewer than two seeds of a case, or no scatter
-  agrees,      ///< beyond the scatter of seeds, in the printed direction, and the printed size is within the
-               ///< interval
+  agrees,      ///< beyond the scatter of seeds, in the printed direction, and of the printed size
   other_size,  ///< beyond the scatter, in the printed direction, of another size
   opposite,    ///< beyond the scatter, in the other direction
-  undecided,   ///< seeds alone may differ so much, and the printed size is within the interval
-  not_seen,    ///< seeds alone may differ so much, and the printed size lies outside the interval
+  undecided,   ///< seeds alone may differ so much, and the printed size is not excluded
+  not_seen,    ///< seeds alone may differ so much, and the printed size is excluded
   within,      ///< of a bound: the whole interval lies within it
   beyond,      ///< of a bound: the whole interval lies beyond it
 };
@@ -68,6 +71,7 @@ struct VelocityTrend {
   JonckheereTerpstra order;                        ///< groups by velocity
   std::vector<ChartSeries::Point> means, printed;  ///< over velocity in m/s: of seeds, and PFC3D's
   double printed_slope = 0;  ///< least squares over PFC3D's printed means; NaN without two
+  double printed_half = 0;   ///< half of its 95 % interval, by PFC3D's repeats; 0: none is printed, exact
   TrendVerdict verdict = TrendVerdict::unknown;  ///< of the printed slope
 };
 /// Of chi and the D50 ratio at the crest; none unless there are three velocities.
@@ -79,16 +83,22 @@ struct TrendLook {
 };
 TrendLook look(TrendVerdict verdict);
 
-/// What a difference with its interval and its p says of a printed one that is no bound.
-TrendVerdict judged(double difference, double low, double high, double p, double printed);
+/// What a difference with its 95 % interval and its p says of a printed one that is no bound, whose 95 %
+/// interval is `printed` +- `printed_half`. The printed size is excluded when the two differ by more than the
+/// halves of their intervals, added in squares.
+TrendVerdict judged(double difference, double low, double high, double p, double printed,
+                    double printed_half);
 
 /// A printed difference and ours.
 struct TrendComparison {
   Trend trend;
   double difference = 0;  ///< ours, of the means over seeds; NaN when unknown
   double low = 0,
-         high = 0;  ///< its 95 % interval from the scatter of seeds (Welch; delta method for a ratio)
-  double p = 1;     ///< two-sided probability that seeds alone differ so much (Welch's t test)
+         high = 0;          ///< its 95 % interval from the scatter of seeds (Welch; delta method for a ratio)
+  double printed_half = 0;  ///< half of the 95 % interval of the printed difference, from the scatter of
+                            ///< PFC3D's repeats, of a case whose scatter is not printed that of the other; 0:
+                            ///< none is printed, taken as exact
+  double p = 1;  ///< two-sided probability that seeds alone differ so much (Welch's t test)
   TrendVerdict verdict = TrendVerdict::unknown;
 };
 

@@ -98,25 +98,32 @@ std::string signs_table(const std::vector<CaseResult>& cases) {
          rows + "</tbody></table></div>\n";
 }
 
+std::string printed_interval(double half, bool relative) {
+  if (!(half > 0)) return "taken as exact";
+  return "± " + (relative ? decimals_text(100 * half, 0) + " %" : decimals_text(half, 2));
+}
+
 std::string velocity_table(const std::vector<CaseResult>& cases) {
   std::string rows;
   for (const VelocityTrend& each : velocity_trends(cases))
     rows += fmt::format(
         "<tr><td class=\"word\">{}</td><td class=\"word\">{}</td><td>{}</td><td>{}<small>{} to "
-        "{}</small></td><td>{}</td><td>{}</td><td>{}<small>{} cases</small></td><td class=\"word "
+        "{}</small></td><td>{}</td><td>{}</td><td>{}<small>{}, {} cases</small></td><td class=\"word "
         "{}\">{}</td></tr>\n",
         html_escaped(quantity_in_words(each.value.quantity)), each.value.section, each.runs,
         decimals_text(each.here.slope, 2), decimals_text(each.here.low, 2), decimals_text(each.here.high, 2),
         html_escaped(p_text(each.here.p)), html_escaped(p_text(each.order.p)),
-        decimals_text(each.printed_slope, 2), each.printed.size(), look(each.verdict).style,
-        look(each.verdict).words);
+        decimals_text(each.printed_slope, 2), printed_interval(each.printed_half, false), each.printed.size(),
+        look(each.verdict).style, look(each.verdict).words);
   if (rows.empty()) return rows;
   return "<h2>Velocity of the blade</h2>\n<p>Least squares over all seeds of all cases of push dumping, with "
          "the 95 % interval of the slope and p of no slope (t, n − 2 degrees of freedom); p of no order by "
          "the "
          "test of Jonckheere and Terpstra (normal approximation with ties). Both are two-sided. PFC3D's "
          "slope "
-         "is that of its printed means, taken as exact.</p>\n<div class=\"wide\"><table><thead><tr><th "
+         "is that of its printed means; ± is half of its 95 % interval, by the scatter of its repeats, where "
+         "one is "
+         "printed (that of the others where not).</p>\n<div class=\"wide\"><table><thead><tr><th "
          "class=\"word\">Quantity</th><th class=\"word\">Section</th><th>Runs</th><th>Slope per "
          "m/s</th><th>p "
          "of the slope</th><th>p of the order</th><th>PFC3D's slope</th><th "
@@ -132,7 +139,12 @@ std::string trends_table(const std::vector<TrendComparison>& trends) {
       "test); below 0.05 a difference is taken to be beyond their scatter, which one in twenty is by chance. "
       "Percentages are over the magnitude of the "
       "second "
-      "case's value.</p>\n<div class=\"wide\"><table><thead><tr><th class=\"word\">Case</th><th "
+      "case's value. ± is half of the 95 % interval of a printed difference, by the scatter of PFC3D's "
+      "repeats (of a "
+      "case whose scatter is not printed that of the other). A printed size is excluded when the two differ "
+      "by more "
+      "than both halves added in squares.</p>\n<div class=\"wide\"><table><thead><tr><th "
+      "class=\"word\">Case</th><th "
       "class=\"word\">against</th><th class=\"word\">Quantity</th><th "
       "class=\"word\">Section</th><th>Printed</th>"
       "<th>Here</th><th>p</th><th class=\"word\">Verdict</th><th "
@@ -146,12 +158,14 @@ std::string trends_table(const std::vector<TrendComparison>& trends) {
     };
     out += fmt::format(
         "<tr><td class=\"word\">{}</td><td class=\"word\">{}</td><td class=\"word\">{}</td><td "
-        "class=\"word\">{}</td><td>{}{}</td><td>{}<small>{} to {}</small></td><td>{}</td><td class=\"word "
+        "class=\"word\">{}</td><td>{}{}<small>{}</small></td><td>{}<small>{} to "
+        "{}</small></td><td>{}</td><td class=\"word "
         "{}\">{}</td><td class=\"word\">{}</td></tr>\n",
         html_escaped(t.case_name), html_escaped(t.against), html_escaped(quantity_in_words(t.quantity)),
-        html_escaped(t.section), t.bound ? "|·| ≤ " : "", text(t.difference), text(row.difference),
-        text(row.low), text(row.high), html_escaped(p_text(row.p)), look(row.verdict).style,
-        look(row.verdict).words, html_escaped(t.source));
+        html_escaped(t.section), t.bound ? "|·| ≤ " : "", text(t.difference),
+        t.bound ? "" : printed_interval(row.printed_half, t.relative), text(row.difference), text(row.low),
+        text(row.high), html_escaped(p_text(row.p)), look(row.verdict).style, look(row.verdict).words,
+        html_escaped(t.source));
   }
   return out + "</tbody></table></div>\n";
 }

@@ -49,8 +49,10 @@ std::string in_words(const VelocityTrend& trend) {
                       : fmt::format(" (95 % {:+.2f} to {:+.2f}, p {})", s.low, s.high, p_text(s.p)),
       p_text(trend.order.p),
       trend.printed.size() > 1
-          ? fmt::format("; PFC3D's slope {:+.2f} ({} cases printed): {}", trend.printed_slope,
-                        trend.printed.size(), look(trend.verdict).words)
+          ? fmt::format(
+                "; PFC3D's slope {:+.2f}{} ({} cases printed): {}", trend.printed_slope,
+                trend.printed_half > 0 ? fmt::format(" +- {:.2f}", trend.printed_half) : ", taken as exact",
+                trend.printed.size(), look(trend.verdict).words)
           : "");
 }
 
@@ -68,8 +70,8 @@ TrendLook look(TrendVerdict verdict) {
       return {"close", "within the bound"};
     case TrendVerdict::beyond:
       return {"differs", "beyond the bound"};
-    case TrendVerdict::not_seen:  // the scatter of the printed value is not in it
-      return {"unknown", "none seen; the printed one, taken as exact, lies outside the interval"};
+    case TrendVerdict::not_seen:
+      return {"differs", "none seen, and the printed size is excluded"};
     case TrendVerdict::undecided:
       return {"unknown", "not decided by these seeds"};
     case TrendVerdict::unknown:
@@ -123,8 +125,7 @@ ReproductionWords reproduction_in_words(const std::vector<CaseResult>& cases,
   if (!trends.empty())
     words.counts.push_back(fmt::format(
         "of {} printed differences between cases {} agree in direction and size, {} in direction alone, {} "
-        "bounds are kept; {} go the other way, {} are not seen and their printed size, taken as exact, lies "
-        "outside the interval, {} "
+        "bounds are kept; {} go the other way, {} are not seen and their printed size is excluded, {} "
         "broken; {} are not decided by these seeds, {} not judged",
         trends.size(), verdicts[TrendVerdict::agrees], verdicts[TrendVerdict::other_size],
         verdicts[TrendVerdict::within], verdicts[TrendVerdict::opposite], verdicts[TrendVerdict::not_seen],

@@ -30,32 +30,56 @@ MeanStd spread(const CaseResult& result, const Trend& trend) {
 
 TrendVerdict verdict_of(const TrendComparison& c) {
   const double printed = c.trend.difference;
-  if (!c.trend.bound) return judged(c.difference, c.low, c.high, c.p, printed);
+  if (!c.trend.bound) return judged(c.difference, c.low, c.high, c.p, printed, c.printed_half);
   if (c.low > printed || c.high < -printed) return TrendVerdict::beyond;
   return c.low >= -printed && c.high <= printed ? TrendVerdict::within : TrendVerdict::undecided;
 }
 
-TrendComparison compared(const Trend& trend, const MeanStd& a, const MeanStd& b) {
+// Of a relative difference the scale scatters, too: var(a / b) = va / b^2 + a^2 vb / b^4.
+double error_of_ratio(double ratio, double va, double vb, double scale) {
+  return std::sqrt(va + ratio * ratio * vb) / scale;
+}
+
+// Of the printed difference, if there is a printed scatter: of a case that has none it is that of the other.
+double printed_half(const CaseResult& here, const CaseResult& there, const Trend& trend, double our_scale) {
+  const PileValue value{trend.quantity, trend.section};
+  std::optional<MeanStd> a = printed_mean(here, value), b = printed_mean(there, value);
+  const auto scatters = [](const std::optional<MeanStd>& printed) {
+    return printed && printed->n > 1 && printed->std > 0;
+  };
+  if (!scatters(a) && !scatters(b)) return 0;
+  const double mean = b ? b->mean : our_scale;
+  if (!scatters(a)) a = b;
+  if (!scatters(b)) b = a;
+  const Welch test = welch(*a, *b);
+  if (!trend.relative) return test.t_95 * test.error;
+  const double ratio = 1 + std::copysign(1.0, mean) * trend.difference;
+  return test.t_95 * error_of_ratio(ratio, a->std * a->std / a->n, b->std * b->std / b->n, std::abs(mean));
+}
+
+TrendComparison compared(const Trend& trend, const CaseResult& here, const CaseResult& there) {
   TrendComparison result{trend};
+  const MeanStd a = spread(here, trend), b = spread(there, trend);
   result.difference = result.low = result.high = result.p = std::nan("");
   const double scale = trend.relative ? std::abs(b.mean) : 1;
   const Welch test = welch(a, b);
   if (!test.known || !(scale > 0)) return result;
-  // Of a relative difference the scale scatters, too: var(a / b) = va / b^2 + a^2 vb / b^4.
-  const double va = a.std * a.std / a.n, vb = b.std * b.std / b.n;
-  const double spread =
-      trend.relative ? std::sqrt(va + a.mean * a.mean * vb / (b.mean * b.mean)) / scale : test.error;
+  const double error = trend.relative
+                           ? error_of_ratio(a.mean / b.mean, a.std * a.std / a.n, b.std * b.std / b.n, scale)
+                           : test.error;
   result.difference = test.difference / scale;
-  result.low = result.difference - test.t_95 * spread, result.high = result.difference + test.t_95 * spread;
+  result.low = result.difference - test.t_95 * error, result.high = result.difference + test.t_95 * error;
   result.p = test.p;
+  if (!trend.bound) result.printed_half = printed_half(here, there, trend, b.mean);
   result.verdict = verdict_of(result);
   return result;
 }
 
 }  // namespace
 
-TrendVerdict judged(double difference, double low, double high, double p, double printed) {
-  const bool inside = low <= printed && printed <= high;
+TrendVerdict judged(double difference, double low, double high, double p, double printed,
+                    double printed_half) {
+  const bool inside = std::abs(difference - printed) <= std::hypot(0.5 * (high - low), printed_half);
   if (!(p < kSignificant)) return inside ? TrendVerdict::undecided : TrendVerdict::not_seen;
   if (difference * printed < 0) return TrendVerdict::opposite;
   return inside ? TrendVerdict::agrees : TrendVerdict::other_size;
@@ -86,7 +110,7 @@ std::vector<TrendComparison> compare_trends(const std::vector<CaseResult>& cases
   for (const Trend& trend : trends) {
     const CaseResult *here = find(cases, trend.case_name), *there = find(cases, trend.against);
     if (here == nullptr || there == nullptr) continue;
-    comparisons.push_back(compared(trend, spread(*here, trend), spread(*there, trend)));
+    comparisons.push_back(compared(trend, *here, *there));
   }
   return comparisons;
 }

@@ -10,6 +10,8 @@ namespace scree {
 
 namespace {
 
+constexpr int kMostCounted = 1'000'000;  // dumps, repeats
+
 // Makes a range of a bound and the other one of the same, if that is there.
 bool joined(const ReferenceValue& row, std::vector<ReferenceValue>& values) {
   if (row.relation != "min" && row.relation != "max") return false;
@@ -29,11 +31,20 @@ bool joined(const ReferenceValue& row, std::vector<ReferenceValue>& values) {
   return false;
 }
 
+// 0 where nothing stands.
+int optional_count(CsvTable& table, const char* column) {
+  const double count = table.optional_number(column).value_or(0);
+  const bool whole = count == std::floor(count) && count >= 1 && count <= kMostCounted;
+  if (!whole && table.optional_number(column))
+    table.fail(fmt::format("{} {} is no whole number from 1 to {}", column, count, kMostCounted));
+  return static_cast<int>(count);
+}
+
 }  // namespace
 
 std::vector<ReferenceValue> read_reference(const std::filesystem::path& file) {
   CsvTable table(file, {"case", "quantity", "section", "kind", "value", "std", "unit", "relation", "source",
-                        "dumps", "rounding"});
+                        "dumps", "rounding", "repeats"});
   std::vector<ReferenceValue> values;
   while (table.next()) {
     ReferenceValue row;
@@ -50,11 +61,8 @@ std::vector<ReferenceValue> read_reference(const std::filesystem::path& file) {
     row.relation = table.one_of(
         "relation", {"eq", "approx", "lt", "le", "gt", "min", "max", "mean", "median", "derived"});
     row.source = table.text("source");
-    if (const auto dumps = table.optional_number("dumps")) {
-      if (*dumps < 1 || *dumps != std::floor(*dumps))
-        table.fail(fmt::format("dumps {} is no number of 1 or more", *dumps));
-      row.dumps = static_cast<int>(*dumps);
-    }
+    row.dumps = optional_count(table, "dumps");
+    row.repeats = optional_count(table, "repeats");
     if (!joined(row, values)) values.push_back(std::move(row));
   }
   return values;

@@ -2,8 +2,8 @@
 // What a run ends with, in the form that summary.json, the tables and the report share.
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,7 +59,9 @@ struct SeedResult {
 };
 
 /// Rock on the face in so thin a layer (of five D50) lies as its bed lies: the slope's angle is the face's.
-inline bool lies_thin(const SeedResult& seed) { return seed.slope_cover < 5; }
+inline bool lies_thin(const SeedResult& seed) {
+  return seed.slope_cover < 5;
+}
 
 /// A printed value of the thesis.
 struct ReferenceValue {
@@ -77,6 +79,7 @@ struct ReferenceValue {
   int dumps = 0;  ///< number of dumps in the pile it was read from; 0: not stated
   std::optional<double> upper_std = std::nullopt;  ///< of `upper`, as std and rounding are of `value`
   double upper_rounding = 0;
+  int repeats = 0;  ///< of which `value` is the mean and `std` the deviation; 0: not stated
 };
 
 /// Into how many sections the slope of a printed case was cut: told by the names top, middle, bottom (3) or

@@ -7,6 +7,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "analysis/statistics/welch.h"
+
 namespace scree {
 namespace {
 
@@ -38,8 +40,8 @@ Slope slope_of(const std::vector<double>& x, const std::vector<double>& y) {
     rest += std::pow(y[k] - mean_y - result.slope * (x[k] - mean_x), 2);
   if (n < 3 || !(rest > 0)) return result;
   const double error = std::sqrt(rest / (n - 2) / xx);
-  const double t_95 = boost::math::quantile(boost::math::students_t(n - 2), 0.975);
-  result.low = result.slope - t_95 * error, result.high = result.slope + t_95 * error;
+  const double half = t_95(n - 2) * error;
+  result.low = result.slope - half, result.high = result.slope + half;
   result.p = 2 * above(std::abs(result.slope) / error, n - 2);
   return result;
 }

@@ -5,6 +5,10 @@
 
 namespace scree {
 
+double t_95(double freedom) {
+  return boost::math::quantile(boost::math::students_t(freedom), 0.975);
+}
+
 Welch welch(const MeanStd& a, const MeanStd& b) {
   Welch test;
   test.difference = a.mean - b.mean;
@@ -14,7 +18,7 @@ Welch welch(const MeanStd& a, const MeanStd& b) {
   if (!(test.error > 0)) return test;
   const double freedom = (va + vb) * (va + vb) / (va * va / (a.n - 1) + vb * vb / (b.n - 1));
   const boost::math::students_t distribution(freedom);
-  test.t_95 = boost::math::quantile(distribution, 0.975);
+  test.t_95 = t_95(freedom);
   test.p =
       2 * boost::math::cdf(boost::math::complement(distribution, std::abs(test.difference) / test.error));
   test.known = true;

@@ -7,6 +7,9 @@ namespace scree {
 /// Probability below which a difference is taken to be no accident.
 inline constexpr double kSignificant = 0.05;
 
+/// Student's t of the two-sided 95 % interval with this many degrees of freedom.
+double t_95(double freedom);
+
 /// Welch's t test, Biometrika 34 (1947) 28.
 struct Welch {
   double difference = 0;  ///< a - b

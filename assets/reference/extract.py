@@ -46,7 +46,8 @@ UNITS = {'mm': ('m', 1e-3), 'cm': ('m', 1e-2), 'm': ('m', 1), 't': ('t', 1), 'pc
 LOW, HIGH = ('gt', 'min'), ('lt', 'le', 'max')
 SECTION = re.compile(r'S\d|top|middle|bottom|whole')
 SECTIONS = re.compile(r'S(\d)-S(\d)')
-COLUMNS = ['case', 'quantity', 'section', 'kind', 'value', 'std', 'unit', 'relation', 'source', 'dumps', 'rounding']
+COLUMNS = ['case', 'quantity', 'section', 'kind', 'value', 'std', 'unit', 'relation', 'source', 'dumps', 'rounding',
+           'repeats']
 # Cases of chapter 5 under their names in simulation_cases.csv.
 SIMULATED_AS = {'cm_field_3sec': 'validation_CM', 'qb_field_9sec': 'validation_QB'}
 
@@ -77,9 +78,10 @@ class Results:
         elif old and (old['std'] or std is None):
             return
         number = lambda x: '' if x is None else '%.6g' % (x * factor)
+        simulated = SIMULATED_AS.get(case, case) if kind == 'pfc3d' else None
         self.rows[key] = dict(zip(COLUMNS, (case, quantity, section, kind, number(value), number(std), unit, relation,
-                                            source, self.dumps.get(SIMULATED_AS.get(case, case), '') if kind == 'pfc3d' else '',
-                                            number(rounding))))
+                                            source, self.dumps.get(simulated, ''), number(rounding),
+                                            self.repeats.get(simulated, ''))))
 
 
 def half_of_last_digit(text):

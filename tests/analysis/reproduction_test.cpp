@@ -44,6 +44,36 @@ TEST(Trends, WelchByHand) {
   EXPECT_NEAR(compare_trends(cases, {trend})[0].high - 2, 3.220 * std::sqrt(1.0 / 3 + 12), 0.02);
 }
 
+// chi of S1 as PFC3D's repeats have it.
+ReferenceValue printed_chi(double mean, std::optional<double> std, int repeats) {
+  ReferenceValue row{"D", "chi", "S1", "pfc3d", mean, std, "-", "eq", "T"};
+  row.repeats = repeats;
+  return row;
+}
+
+TEST(Trends, ThePrintedDifferenceScattersLikeItsRepeats) {
+  // Ours as above: 2 +- 4.157. Five repeats of a deviation of 1 in both: sqrt(2 / 5) with 8 degrees of
+  // freedom (t 2.306), half of the interval 1.458; together sqrt(4.157^2 + 1.458^2) = 4.405.
+  std::vector<CaseResult> cases{runs("b1", {2, 3, 4}), runs("a1", {-1, 1, 3})};
+  const auto print = [&](std::size_t k, const ReferenceValue& row) {
+    cases[k].comparison = compare_with_reference(cases[k].runs.seeds, {row}, {"D"});
+  };
+  const auto judge = [&](double difference, bool relative) {
+    return compare_trends(cases, {{"b1", "a1", "chi", "S1", difference, relative, false, "T"}})[0];
+  };
+  print(0, printed_chi(5.4, 1, 5));
+  print(1, printed_chi(-1, 1, 5));
+  EXPECT_NEAR(judge(6.4, false).printed_half, 1.458, 1e-3);
+  EXPECT_EQ(judge(6.38, false).verdict, TrendVerdict::undecided);
+  EXPECT_EQ(judge(6.43, false).verdict, TrendVerdict::not_seen);
+  // Relative to the magnitude of -1: 0.28 more is 0.72 of it, and the deviation sqrt(1/5 + 0.72^2 / 5).
+  EXPECT_NEAR(judge(0.28, true).printed_half, 2.306 * std::sqrt((1 + 0.72 * 0.72) / 5), 1e-3);
+  print(0, printed_chi(5.4, std::nullopt, 5));
+  EXPECT_NEAR(judge(6.4, false).printed_half, 1.458, 1e-3) << "that of the other case";
+  print(1, printed_chi(-1, 1, 0));
+  EXPECT_EQ(judge(6.4, false).printed_half, 0) << "of how many repeats is not known";
+}
+
 TEST(Trends, AreJudgedByDirectionSizeAndBound) {
   // Means 0.5 and 0, standard error sqrt(2 * 1e-4 / 3), 4 degrees of freedom: 0.5 +- 0.023.
   const std::vector<CaseResult> cases{runs("b1", {0.49, 0.5, 0.51}), runs("a1", {-0.01, 0, 0.01})};
@@ -109,7 +139,8 @@ TEST(Reproduction, SaysWhatAgreesAndWhatDoesNot) {
   const ReproductionWords words = reproduction_in_words({a1}, {});
   EXPECT_THAT(words.runs,
               Contains("a1: 2 runs done, 3 not run, 0 failed, 0 left out because they did not come to rest"));
-  EXPECT_THAT(words.counts, Contains("1 of 2 values printed of PFC3D agree within two standard deviations (50 %)"));
+  EXPECT_THAT(words.counts,
+              Contains("1 of 2 values printed of PFC3D agree within two standard deviations (50 %)"));
   EXPECT_THAT(words.apart, Contains(HasSubstr("does not agree: A1 chi S6 (PFC3D): printed 0.9, here 0.3")));
 }
 
@@ -141,7 +172,8 @@ TEST(VelocityTrend, OverAllSeedsBesidePfc3ds) {
   for (std::size_t k = 0; k < 3; ++k) cases[k].blade_velocity = k == 0 ? 3.0 : static_cast<double>(k);
   for (std::size_t k = 0; k < 2; ++k)
     cases[k].comparison = compare_with_reference(
-        cases[k].runs.seeds, {{"D", "chi", "S1", "pfc3d", k == 0 ? 0.5 : -0.5, 0.3, "-", "eq", "T"}}, {"D"});
+        cases[k].runs.seeds,
+        {printed_chi(k == 0 ? 0.5 : -0.5, k == 0 ? std::optional(0.3) : std::nullopt, 4)}, {"D"});
   const auto trends = velocity_trends(cases);
   ASSERT_EQ(trends.size(), 1u) << "no D50 ratio in these runs";
   EXPECT_EQ(trends[0].first, "d1");
@@ -152,6 +184,8 @@ TEST(VelocityTrend, OverAllSeedsBesidePfc3ds) {
   EXPECT_DOUBLE_EQ(trends[0].order.statistic, 9.5);
   EXPECT_DOUBLE_EQ(trends[0].order.expected, 6);
   EXPECT_NEAR(trends[0].printed_slope, 0.5, 1e-12);
+  // 1 over 2 m/s, both of a deviation of 0.3 in 4 repeats: sqrt(2 * 0.09 / 4) / 2, t of 3 degrees 3.182.
+  EXPECT_NEAR(trends[0].printed_half, 3.182 * std::sqrt(0.045) / 2, 1e-3);
   EXPECT_EQ(trends[0].verdict, TrendVerdict::undecided);
   ASSERT_EQ(trends[0].means.size(), 3u);
   EXPECT_EQ(trends[0].means[1].x, 2);

@@ -113,8 +113,8 @@ TEST(Reference, HasThePrintedRangesOfSections) {
 TEST(Reference, BoundsOfARangeKeepWhatIsTheirs) {
   const auto file = std::filesystem::path(testing::TempDir()) / "scree_range.csv";
   std::ofstream(file)
-      << "case,quantity,section,kind,value,std,unit,relation,source,dumps,rounding\n"
-         "A,chi,S1,pfc3d,-0.5,0.2,-,max,line 2,,0.05\nA,chi,S1,pfc3d,-1,0.1,-,min,line 1,,0.5\n";
+      << "case,quantity,section,kind,value,std,unit,relation,source,dumps,rounding,repeats\n"
+         "A,chi,S1,pfc3d,-0.5,0.2,-,max,line 2,,0.05,5\nA,chi,S1,pfc3d,-1,0.1,-,min,line 1,,0.5,5\n";
   const auto rows = read_reference(file);
   std::filesystem::remove(file);
   ASSERT_EQ(rows.size(), 1u);
@@ -124,6 +124,7 @@ TEST(Reference, BoundsOfARangeKeepWhatIsTheirs) {
   EXPECT_EQ(rows[0].upper, -0.5);
   EXPECT_EQ(rows[0].upper_std, 0.2);
   EXPECT_EQ(rows[0].upper_rounding, 0.05);
+  EXPECT_EQ(rows[0].repeats, 5);
   EXPECT_EQ(rows[0].source, "line 1; line 2");
 }
 
@@ -136,22 +137,24 @@ TEST(Reference, EachValueStandsOnce) {
 
 TEST(Reference, MalformedLineIsNamed) {
   const auto file = std::filesystem::path(testing::TempDir()) / "scree_bad_reference.csv";
-  const std::string header = "case,quantity,section,kind,value,std,unit,relation,source,dumps,rounding\n";
+  const std::string header =
+      "case,quantity,section,kind,value,std,unit,relation,source,dumps,rounding,repeats\n";
   const std::map<std::string, std::string> bad{
       {"", ": the file is empty"},
       {"a,b\n", ":1: "},
       {header + "A1,chi,S1,pfc3d,1,,-,eq,,\n", ":2: "},
-      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,,,x\n", ":2: "},
-      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,,\nA1,chi,S1,pfc3d,one,,-,eq,C.1,,\n", ":3: "},
-      {header + "A1,chi,S1,pfc3d,,,-,eq,C.1,,\n", ":2: "},
-      {header + "A1,chi,S1,pfc3d,1,-0.1,-,eq,C.1,,\n", ":2: "},
-      {header + "A1,chi,S1,guess,1,,-,eq,C.1,,\n", ":2: "},
-      {header + "A1,d50,S1,pfc3d,1,,mm,eq,C.1,,\n", ":2: "},
-      {header + "A1,chi,S1,pfc3d,1,,-,equals,C.1,,\n", ":2: "},
-      {header + ",chi,S1,pfc3d,1,,-,eq,C.1,,\n", ":2: "},
-      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,2.5,\n", ":2: "},
-      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,0,\n", ":2: "},
-      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,,-1\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,,,,x\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,,,\nA1,chi,S1,pfc3d,one,,-,eq,C.1,,,\n", ":3: "},
+      {header + "A1,chi,S1,pfc3d,,,-,eq,C.1,,,\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,-0.1,-,eq,C.1,,,\n", ":2: "},
+      {header + "A1,chi,S1,guess,1,,-,eq,C.1,,,\n", ":2: "},
+      {header + "A1,d50,S1,pfc3d,1,,mm,eq,C.1,,,\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,equals,C.1,,,\n", ":2: "},
+      {header + ",chi,S1,pfc3d,1,,-,eq,C.1,,,\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,2.5,,\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,0,,\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,,-1,\n", ":2: "},
+      {header + "A1,chi,S1,pfc3d,1,,-,eq,C.1,,,0\n", ":2: repeats 0 is no whole number"},
   };
   for (const auto& [text, place] : bad) {
     std::ofstream(file) << text;
