@@ -75,6 +75,10 @@ int run_reproduce(const ReproduceOptions& options) {
   if (!options.csv.empty() && !may_replace(options.csv, {options.from, store_file(options.ensemble.store)}))
     return kBadInput;
 
+  // Before hours of work, which they could spoil.
+  const fs::path folder = asset_dir() / "reference";
+  const std::vector<scree::ReferenceValue> reference = scree::read_reference(folder / "results.csv");
+  const std::vector<scree::Trend> printed_trends = scree::read_trends(folder / "trends.csv");
   std::vector<scree::PointResults> points;
   scree::EnsembleProgress progress;
   if (!options.from.empty()) {
@@ -92,9 +96,8 @@ int run_reproduce(const ReproduceOptions& options) {
     points = scree::look_up(sweep, requests, *store);
   }
 
-  const fs::path reference = asset_dir() / "reference";
-  const auto cases = results_of(points, scree::read_reference(reference / "results.csv"));
-  const auto trends = scree::compare_trends(cases, scree::read_trends(reference / "trends.csv"));
+  const auto cases = results_of(points, reference);
+  const auto trends = scree::compare_trends(cases, printed_trends);
   if (!options.csv.empty()) {
     scree::write_sweep_csv(sweep, points, options.csv);
     fmt::print("table: {}\n", options.csv.string());

@@ -7,7 +7,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "analysis/diagnose/in_parallel.h"
 #include "analysis/report/conductivity_table.h"
 #include "analysis/report/report.h"
 #include "analysis/results/summary.h"
@@ -21,6 +20,7 @@
 #include "cli/table.h"
 #include "sim/io/text_file.h"
 #include "sim/io/trajectory.h"
+#include "sim/material/in_parallel.h"
 #include "sim/material/input_bytes.h"
 #include "sim/scene/scenario_keys.h"
 
@@ -50,6 +50,7 @@ struct Plan {
   fs::path pile;  // run folder with the piles to be read; empty: simulate
   bool resume = false, summary_only = false;
   std::vector<std::string> warnings;  // of the scenario
+  std::vector<scree::ReferenceValue> reference;
   RunRecord record;
   std::unique_ptr<FolderLock> lock;
 
@@ -129,7 +130,9 @@ std::optional<Plan> plan_resumed(const RunOptions& options) {
 
 std::optional<Plan> make_plan(const RunOptions& options) {
   try {
-    return options.resume.empty() ? plan_new(options) : plan_resumed(options);
+    std::optional<Plan> plan = options.resume.empty() ? plan_new(options) : plan_resumed(options);
+    if (plan) plan->reference = scree::read_reference(asset_dir() / "reference" / "results.csv");
+    return plan;
   } catch (const std::runtime_error& error) {
     fmt::print(stderr, "scree: {}\n", scree::one_line(error.what()));
     return std::nullopt;
@@ -280,9 +283,8 @@ int run_run(const RunOptions& options) {
     return end(std::max<int>(ended.code, kFailed));
   }
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  scree::RunResult result =
-      scree::put_together(plan.scenario, std::move(ended.results), std::move(ended.notes),
-                          scree::read_reference(asset_dir() / "reference" / "results.csv"), wall);
+  scree::RunResult result = scree::put_together(plan.scenario, std::move(ended.results),
+                                                std::move(ended.notes), plan.reference, wall);
   // To stderr as well: a sweep quotes it.
   for (const std::string& failure : result.failures) fmt::print(stderr, "{}\n", failure);
   const int code = result.failures.empty() ? ended.code : static_cast<int>(kWatchFailed);

@@ -89,6 +89,35 @@ std::vector<StudyRank> rank_options(const std::vector<StudyOption>& options,
   return ranks;
 }
 
+std::string study_answer(const std::vector<StudyOption>& options, const StudyCriterion& criterion) {
+  std::vector<std::string> first;
+  const StudyRank* best = nullptr;
+  const StudyRank* next = nullptr;
+  const std::vector<StudyRank> ranks = rank_options(options, criterion);
+  for (const StudyRank& rank : ranks) {
+    if (!rank.rank) continue;
+    if (best == nullptr) best = &rank;
+    if (*rank.rank == 1)
+      first.push_back(options[rank.option].name);
+    else if (next == nullptr)
+      next = &rank;
+  }
+  if (best == nullptr)
+    return fmt::format("No option is ranked by {} yet: it takes two runs of each.", criterion.words);
+  const auto value = [&](const StudyRank& rank) {
+    return fmt::format("{:.3g} ± {:.2g}", rank.value.mean, rank.value.std);
+  };
+  const std::string behind =
+      next == nullptr ? "" : fmt::format("; then {}, {}", options[next->option].name, value(*next));
+  if (first.size() == 1)
+    return fmt::format("{} is best by {}: {}{}.", first.front(), criterion.words, value(*best), behind);
+  return fmt::format(
+      "These runs do not tell {} apart by {}: their differences to the smallest mean, {} of {}, are within "
+      "the "
+      "scatter of seeds{}.",
+      fmt::join(first, ", "), criterion.words, value(*best), options[best->option].name, behind);
+}
+
 std::vector<std::string> study_in_words(const std::vector<StudyOption>& options,
                                         const StudyCriterion& criterion) {
   std::vector<std::string> lines;

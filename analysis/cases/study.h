@@ -43,7 +43,10 @@ struct StudyRank {
 /// one with a single seed is not known: it is not ranked, and stands behind the others.
 std::vector<StudyRank> rank_options(const std::vector<StudyOption>& options, const StudyCriterion& criterion);
 
-/// The answer in words, a line each.
+/// The answer in a sentence: what comes first, and what cannot be told from it.
+std::string study_answer(const std::vector<StudyOption>& options, const StudyCriterion& criterion);
+
+/// The ranking in words, a line each.
 std::vector<std::string> study_in_words(const std::vector<StudyOption>& options,
                                         const StudyCriterion& criterion);
 

@@ -90,6 +90,8 @@ std::vector<std::string> write_study(const std::string& title, const std::string
   std::filesystem::create_directories(pictures);
   PageFigures shown;
   std::string body =
+      fmt::format("<p class=\"lead\">{}</p>\n", html_escaped(study_answer(options, criterion)));
+  body +=
       "<h2>Ranking</h2>\n<p>Options of one rank are a tie: their difference to the best of it is "
       "within the scatter of seeds (Welch's t test, p of 0.05 and more).</p>\n<ul>\n";
   for (const std::string& line : study_in_words(options, criterion))

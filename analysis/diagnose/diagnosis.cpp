@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "analysis/diagnose/blocks.h"
-#include "analysis/diagnose/in_parallel.h"
+#include "sim/material/in_parallel.h"
 
 namespace scree {
 namespace {

@@ -9,7 +9,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "analysis/diagnose/in_parallel.h"
+#include "sim/material/in_parallel.h"
 
 namespace scree {
 namespace {

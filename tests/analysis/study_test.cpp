@@ -49,6 +49,10 @@ TEST(Study, DifferencesWithinTheScatterAreTies) {
   EXPECT_NEAR(ranks[2].value.mean, 2.0, 1e-12);
   EXPECT_THAT(study_in_words(options, *study_criterion("chi_range")),
               testing::Contains(testing::HasSubstr("1. good: 1 +- 0.1 (tie)")));
+  EXPECT_EQ(study_answer(options, *study_criterion("chi_range")),
+            "These runs do not tell good, as good apart by χ of the toe less χ of the crest: their "
+            "differences to the "
+            "smallest mean, 1 ± 0.1 of good, are within the scatter of seeds; then worst, 2 ± 0.1.");
 }
 
 TEST(Study, OneSeedIsNotRanked) {
@@ -63,6 +67,10 @@ TEST(Study, OneSeedIsNotRanked) {
   EXPECT_FALSE(ranks[2].rank.has_value());
   EXPECT_THAT(study_in_words(options, *study_criterion("chi_range")),
               testing::Contains("one: 0.6 (not ranked: of one run the scatter is not known)"));
+  EXPECT_EQ(study_answer(options, *study_criterion("chi_range")),
+            "three is best by χ of the toe less χ of the crest: 1.55 ± 0.071; then two, 2.55 ± 0.071.");
+  EXPECT_EQ(study_answer({option("one", {-0.1})}, *study_criterion("chi_range")),
+            "No option is ranked by χ of the toe less χ of the crest yet: it takes two runs of each.");
 }
 
 TEST(Study, RatiosAreToeOverCrest) {

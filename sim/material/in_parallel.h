@@ -1,6 +1,6 @@
 #pragma once
 // Work of seconds whose parts do not depend on one another; for loops of microseconds there is Team
-// (sim/world), which the analysis does not know.
+// (sim/world).
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
