@@ -19,17 +19,17 @@ struct OfGrading {
 
 const std::vector<OfGrading>& numbers_of_grading() {
   static const std::vector<OfGrading> all{
-      {{"d10", "D10", "m", true}, [](const Grading& g) { return g.diameter(0.10); }},
-      {{"d15", "D15", "m", true}, [](const Grading& g) { return g.diameter(0.15); }},
-      {{"d30", "D30", "m", true}, [](const Grading& g) { return g.diameter(0.30); }},
-      {{"d50", "D50", "m", true}, [](const Grading& g) { return g.diameter(0.50); }},
-      {{"d60", "D60", "m", true}, [](const Grading& g) { return g.diameter(0.60); }},
-      {{"d80", "D80", "m", true}, [](const Grading& g) { return g.diameter(0.80); }},
-      {{"d90", "D90", "m", true}, [](const Grading& g) { return g.diameter(0.90); }},
-      {{"d95", "D95", "m", true}, [](const Grading& g) { return g.diameter(0.95); }},
-      {{"cu", "coefficient of uniformity", "-", true}, [](const Grading& g) { return g.cu(); }},
-      {{"cc", "coefficient of curvature", "-", true}, [](const Grading& g) { return g.cc(); }},
-      {{"d90_over_d15", "D90 / D15", "-", true},
+      {{"d10", "D10", "m"}, [](const Grading& g) { return g.diameter(0.10); }},
+      {{"d15", "D15", "m"}, [](const Grading& g) { return g.diameter(0.15); }},
+      {{"d30", "D30", "m"}, [](const Grading& g) { return g.diameter(0.30); }},
+      {{"d50", "D50", "m"}, [](const Grading& g) { return g.diameter(0.50); }},
+      {{"d60", "D60", "m"}, [](const Grading& g) { return g.diameter(0.60); }},
+      {{"d80", "D80", "m"}, [](const Grading& g) { return g.diameter(0.80); }},
+      {{"d90", "D90", "m"}, [](const Grading& g) { return g.diameter(0.90); }},
+      {{"d95", "D95", "m"}, [](const Grading& g) { return g.diameter(0.95); }},
+      {{"cu", "coefficient of uniformity", "-"}, [](const Grading& g) { return g.cu(); }},
+      {{"cc", "coefficient of curvature", "-"}, [](const Grading& g) { return g.cc(); }},
+      {{"d90_over_d15", "D90 / D15", "-"},
        [](const Grading& g) { return g.diameter(0.90) / g.diameter(0.15); }},
   };
   return all;
@@ -55,15 +55,14 @@ double taylor(const Grading& grading, const Grading& original) {
 
 const std::vector<AgainstOriginal>& numbers_against_original() {
   static const std::vector<AgainstOriginal> all{
-      {{"d10_rel", "D10 over that of the rock as dumped", "-", false}, relative<10>},
-      {{"d50_rel", "D50 over that of the rock as dumped", "-", false}, relative<50>},
-      {{"d80_rel", "D80 over that of the rock as dumped", "-", false}, relative<80>},
-      {{"d90_rel", "D90 over that of the rock as dumped", "-", false}, relative<90>},
-      {{"d95_rel", "D95 over that of the rock as dumped", "-", false}, relative<95>},
-      {{"chi", "segregation degree χ", "-", false}, segregation_degree},
-      {{"ksat_kcm_rel", "conductivity over that of the rock as dumped, Kozeny-Carman", "-", false},
-       kozeny_carman},
-      {{"ksat_taylor_rel", "conductivity over that of the rock as dumped, Taylor", "-", false}, taylor},
+      {{"d10_rel", "D10 over that of the rock as dumped", "-"}, relative<10>},
+      {{"d50_rel", "D50 over that of the rock as dumped", "-"}, relative<50>},
+      {{"d80_rel", "D80 over that of the rock as dumped", "-"}, relative<80>},
+      {{"d90_rel", "D90 over that of the rock as dumped", "-"}, relative<90>},
+      {{"d95_rel", "D95 over that of the rock as dumped", "-"}, relative<95>},
+      {{"chi", "segregation degree χ", "-"}, segregation_degree},
+      {{"ksat_kcm_rel", "conductivity over that of the rock as dumped, Kozeny-Carman", "-"}, kozeny_carman},
+      {{"ksat_taylor_rel", "conductivity over that of the rock as dumped, Taylor", "-"}, taylor},
   };
   return all;
 }
@@ -71,13 +70,13 @@ const std::vector<AgainstOriginal>& numbers_against_original() {
 // Of gradings with the fines of the sieved sample.
 const std::vector<AgainstOriginal>& numbers_with_fines() {
   static const std::vector<AgainstOriginal> all{
-      {{"ksat_kcm_rel_filled", "the same with fines, Kozeny-Carman", "-", false}, kozeny_carman},
-      {{"ksat_taylor_rel_filled", "the same with fines, Taylor", "-", false}, taylor},
+      {{"ksat_kcm_rel_filled", "the same with fines, Kozeny-Carman", "-"}, kozeny_carman},
+      {{"ksat_taylor_rel_filled", "the same with fines, Taylor", "-"}, taylor},
   };
   return all;
 }
 
-constexpr FieldQuantity kGivenChi{"chi_given", "segregation degree χ as given", "-", false};
+constexpr FieldQuantity kGivenChi{"chi_given", "segregation degree χ as given", "-"};
 
 Grading with_fines(const Grading& grading, const FieldOptions& options) {
   return options.sieved ? with_sieved_fines(grading, *options.sieved, options.limit) : grading;

@@ -16,8 +16,7 @@ namespace scree {
 /// A number of one grading.
 struct FieldQuantity {
   const char *name, *words;
-  const char* unit;     ///< m, -, m/s
-  bool of_whole_slope;  ///< also means something for the whole slope
+  const char* unit;  ///< m, -, m/s
 };
 
 /// d10, d15, d30, d50, d60, d80, d90, d95 (m), cu, cc, d90_over_d15; and against the original material, which

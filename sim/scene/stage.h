@@ -24,10 +24,8 @@ class Stage {
         const Vec3& domain_low, const Vec3& domain_high);
 
   RockWorld& world() { return *world_; }
-  const Scenario& scenario() const { return scenario_; }
   /// What the scenario's effects change.
   const Modifications& changes() const { return model_.changes; }
-  std::uint64_t seed() const { return seed_; }
 
   /// Surface of a tool or of the ground: its own friction where given, the rock's otherwise, with what
   /// effects make of it.
