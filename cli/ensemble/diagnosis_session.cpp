@@ -318,12 +318,12 @@ int DiagnosisSession::of_a_model() const {
   return static_cast<int>(design_.size()) * model_.simulations.check;
 }
 
-void DiagnosisSession::learn_from(const std::vector<ExperimentRuns>& runs, const RunThrough& run,
-                                  DiagnosisOutcome& outcome) {
+void DiagnosisSession::learn_from(const std::vector<ExperimentRuns>& runs, const std::string& what,
+                                  const RunThrough& run, DiagnosisOutcome& outcome) {
   // The short experiments wait for nothing: all runs of all experiments go together.
   std::vector<RunRequest> all;
   for (const ExperimentRuns& each : runs) all.insert(all.end(), each.requests.begin(), each.requests.end());
-  const std::vector<std::optional<StoredResult>> results = run(all);
+  const std::vector<std::optional<StoredResult>> results = run(all, stage_ + ": " + what);
   std::size_t next = 0;
   for (std::size_t e = 0; e < runs.size(); ++e) {
     const std::vector<std::optional<StoredResult>> here(
@@ -370,7 +370,9 @@ SimulatedModel DiagnosisSession::simulate(const ModelPoint& point, const RunThro
     runs.push_back(std::move(here));
     before.push_back(learnt_[e].size());
   }
-  learn_from(runs, run, outcome);
+  Hypothesis effects;
+  for (const EffectAt& each : point.effects) effects.effects.push_back(each.effect);
+  learn_from(runs, name_of(space_, effects) + ", at its fit", run, outcome);
   SimulatedModel simulated;
   simulated.at = point;
   simulated.runs = model_.simulations.check;
@@ -412,7 +414,7 @@ void DiagnosisSession::explore(const std::vector<ModelPoint>& points, const RunT
                                DiagnosisOutcome& outcome) {
   std::vector<PlannedRun> planned;
   for (const ModelPoint& point : points) planned.push_back({point, kCheckSeeds + ++checks_});
-  learn_from(in_every_experiment(planned), run, outcome);
+  learn_from(in_every_experiment(planned), "what the data leave open of what may be named", run, outcome);
 }
 
 std::vector<NextMeasurement> DiagnosisSession::tell_apart(const DiagnosisOutcome& outcome) const {
@@ -512,7 +514,8 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
   DiagnosisOutcome outcome;
   outcome.space = space_;
   outcome.notes = data_.notes;
-  learn_from(design_, run, outcome);
+  stage_ = "before the data are looked at";
+  learn_from(design_, "the base model and every effect", run, outcome);
   outcome.nominal = nominal_of_design();
   LearntModel model = learn();
   Diagnosis d = diagnose(space_, data_.measured, model, {}, Pairs::where_none_explains, nullptr, threads_);
@@ -539,6 +542,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
     const int further = again ? model_.simulations.rounds : 0;
     if (outcome.rounds >= std::min(last_round + further, most_rounds())) break;
     ++outcome.rounds;
+    stage_ = fmt::format("round {} of at most {}", outcome.rounds, most_rounds());
     std::vector<std::size_t> known;
     for (const auto& runs : learnt_) known.push_back(runs.size());
     if (!one_round(d, model, tried, run, outcome)) {
@@ -556,6 +560,7 @@ DiagnosisOutcome DiagnosisSession::run(const RunThrough& run) {
         outcome.settled = outcome.settled && tried.up_to_date(*j);
     if (const Judgement* j = named_first(d)) outcome.settled = outcome.settled && tried.bears_out(*j);
   }
+  stage_ = "trying the answer";
   say_what_stands(d, tried, outcome);
   outcome.nominal.gap = simulated_gap(d, model, outcome.nominal.mean, std::max(outcome.nominal.runs, 1));
   if (tried.last(d.calibration) != nullptr) {

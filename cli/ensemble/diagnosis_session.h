@@ -14,8 +14,10 @@
 
 namespace scree {
 
-/// Does runs that are not in the store yet, and returns what the store has of each. Throws Stopped.
-using RunThrough = std::function<std::vector<std::optional<StoredResult>>(const std::vector<RunRequest>&)>;
+/// Does runs that are not in the store yet, and returns what the store has of each. The words say what they
+/// are for, to a user who waits. Throws Stopped.
+using RunThrough = std::function<std::vector<std::optional<StoredResult>>(const std::vector<RunRequest>&,
+                                                                          const std::string& what)>;
 
 /// A user has ended the work.
 struct Stopped : std::runtime_error {
@@ -89,7 +91,8 @@ class DiagnosisSession {
 
  private:
   std::vector<ExperimentRuns> in_every_experiment(const std::vector<PlannedRun>& planned) const;
-  void learn_from(const std::vector<ExperimentRuns>& runs, const RunThrough& run, DiagnosisOutcome& outcome);
+  void learn_from(const std::vector<ExperimentRuns>& runs, const std::string& what, const RunThrough& run,
+                  DiagnosisOutcome& outcome);
   SimulatedModel simulate(const ModelPoint& point, const RunThrough& run, DiagnosisOutcome& outcome);
   // Learns from simulations spread over what the data leave open of a hypothesis.
   void explore(const std::vector<ModelPoint>& points, const RunThrough& run, DiagnosisOutcome& outcome);
@@ -123,6 +126,7 @@ class DiagnosisSession {
   std::vector<std::vector<WholeRun>> everything_;  // for what was not measured; by experiment
   std::vector<std::string> failure_;               // the last of each experiment, why; empty without one
   std::set<std::string> used_;                     // keys of the simulations that gave what was measured
+  std::string stage_;                              // of the diagnosis, for a user who waits
   std::uint64_t checks_ = 0;                       // seeds used for fits and what is open of them
 };
 

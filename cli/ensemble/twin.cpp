@@ -30,12 +30,14 @@ std::vector<Dataset::Experiment> experiments_of(const DiagnosisModel& model) {
   return all;
 }
 
+constexpr const char* kHidden = "the hidden truth";  // whatever it is
+
 // The runs of all experiments; their results by experiment.
 std::vector<std::vector<std::optional<StoredResult>>> done(const std::vector<ExperimentRuns>& runs,
-                                                           const RunThrough& run) {
+                                                           const std::string& what, const RunThrough& run) {
   std::vector<RunRequest> all;
   for (const ExperimentRuns& each : runs) all.insert(all.end(), each.requests.begin(), each.requests.end());
-  const auto results = run(all);
+  const auto results = run(all, what);
   std::vector<std::vector<std::optional<StoredResult>>> split;
   std::size_t next = 0;
   for (const ExperimentRuns& each : runs) {
@@ -148,7 +150,7 @@ class TwinMaker {
       planned.push_back(runs_of(model_, space_, each, plain, asset_dir_));
     }
     DesignRuns learnt;
-    const auto results = done(planned, design);
+    const auto results = done(planned, "the base model over its parameters", design);
     for (std::size_t e = 0; e < planned.size(); ++e)
       learnt.push_back(gather(planned[e], results[e], outputs_of(e)).runs);
     return {space_, names, learnt};
@@ -200,7 +202,7 @@ class TwinMaker {
       for (const auto& effects : {std::vector<EffectAt>{there}, std::vector<EffectAt>{}})
         both.push_back(runs_at(e, {base, effects}, kStrengthSeeds, 0,
                                space_.effects[there.effect].acts_in(experiments_[e].name) ? pairs : 0));
-    const auto ended = done(both, hidden_);
+    const auto ended = done(both, kHidden, hidden_);
     Eigen::VectorXd change = Eigen::VectorXd::Zero(covariance_.rows());
     Eigen::MatrixXd unsure = Eigen::MatrixXd::Zero(covariance_.rows(), covariance_.rows());
     Eigen::Index begin = 0;
@@ -287,7 +289,7 @@ class TwinMaker {
         tried[e] += lack;
       }
       if (runs.empty()) return measured;
-      const auto ended = done(runs, hidden_);
+      const auto ended = done(runs, kHidden, hidden_);
       for (std::size_t k = 0; k < which.size(); ++k)
         for (DesignRun& run : gather(runs[k], ended[k], outputs_of(which[k])).runs)
           measured[which[k]].push_back(std::move(run));

@@ -1,5 +1,6 @@
 #include "cli/ensemble/diagnosis_session.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
@@ -29,7 +30,9 @@ constexpr double kRatios = 100;  // ratios of diameters and the like are above 0
 // The program without its simulator: a run's numbers are formulas of its scenario, plus noise of its seed.
 class FormulaSimulator {
  public:
-  std::vector<std::optional<StoredResult>> operator()(const std::vector<RunRequest>& requests) {
+  std::vector<std::optional<StoredResult>> operator()(const std::vector<RunRequest>& requests,
+                                                      const std::string& what) {
+    stages.push_back(what);
     std::vector<std::optional<StoredResult>> results;
     for (const RunRequest& request : requests) {
       ++asked;
@@ -77,6 +80,7 @@ class FormulaSimulator {
     }
     return results;
   }
+  std::vector<std::string> stages;  ///< what a user who waits is told
   int asked = 0, with_effects = 0;
   std::set<std::string> with_both,
       with_two_others;                   ///< scenarios with cohesion and twisting, with other pairs
@@ -189,6 +193,10 @@ TEST_F(Session, TakesNoMoreRoundsThanTheModelAllows) {
   const TwinSpec spec{{"cohesion"}, 6, 5, 0.5, 3, ""};
   simulator.fits_are_off_by = 4;  // so that fits move
   EXPECT_GT(diagnosed(spec).rounds, 1);
+  EXPECT_EQ(simulator.stages.front(), "before the data are looked at: the base model and every effect");
+  EXPECT_EQ(simulator.stages[1],
+            fmt::format("round 1 of at most {}: no effect (re-calibration alone), at its fit",
+                        3 * model.simulations.rounds));
   const int all = simulator.asked;
   model.simulations.rounds = 1;
   simulator.asked = 0;
@@ -336,8 +344,8 @@ TEST_F(Session, TwinsRepeatWhatGivesNoMeasurement) {
   FormulaSimulator formula;
   const auto with_failures = [&](std::uint64_t every) {
     int asked = 0;
-    const auto hidden = [&](const std::vector<RunRequest>& requests) {
-      auto results = formula(requests);
+    const auto hidden = [&](const std::vector<RunRequest>& requests, const std::string& what) {
+      auto results = formula(requests, what);
       for (std::size_t k = 0; k < requests.size(); ++k) {
         if (requests[k].seed % every == 0) results[k]->outputs.erase("d50_rel_ring2");
         asked += requests[k].seed < 1'500'000'000 ? 1 : 0;  // others tell how strong the effect is
@@ -359,8 +367,8 @@ TEST_F(Session, TwinsRepeatWhatGivesNoMeasurement) {
 TEST_F(Session, TwinsKeepToAmplitudesThatCanBeSimulated) {
   FormulaSimulator formula;
   double most = 1e9;  // bond number from which on simulations fail
-  const auto hidden = [&](const std::vector<RunRequest>& requests) {
-    auto results = formula(requests);
+  const auto hidden = [&](const std::vector<RunRequest>& requests, const std::string& what) {
+    auto results = formula(requests, what);
     for (std::size_t k = 0; k < requests.size(); ++k)
       if (const YAML::Node effects = YAML::Load(requests[k].scenario)["effects"];
           effects && effects["cohesion"] && effects["cohesion"]["bond_number"].as<double>() > most)
@@ -450,9 +458,8 @@ TEST_F(Session, EffectsThatCannotBeLookedForAreSaid) {
 TEST_F(Session, WhatTheModelSaysInsteadOfAnExperimentIsSaid) {
   JoinedData data = data_of({{"cohesion"}, 6, 5, 0.5, 3, ""});
   data.experiments.front().overrides.push_back("material.mu_r=0.1");
-  const std::size_t before = DiagnosisSession(model, data_of({{"cohesion"}, 6, 5, 0.5, 3, ""}), {}, kAssets)
-                                 .data()
-                                 .notes.size();
+  const std::size_t before =
+      DiagnosisSession(model, data_of({{"cohesion"}, 6, 5, 0.5, 3, ""}), {}, kAssets).data().notes.size();
   const DiagnosisSession session(model, data, {}, kAssets);
   EXPECT_EQ(session.data().notes.size(), before + 1) << "its mass is its own";
   EXPECT_EQ(session.data().notes.front(),
@@ -499,11 +506,12 @@ TEST(Models, ThoseOfTheProjectLoad) {
 }
 
 TEST(ScenarioPatch, NestsKeysAndNamesTheFileFromWhereItLies) {
-  EXPECT_EQ(scenario_patch("/data/scenarios/a.yaml", "/data/runs/x",
-                           {"material.mu=0.3", "effects.cohesion.bond_number=1", "material.mu_r=0.2"},
-                           {"What it is."}),
-            "# What it is.\nextends: \"../../scenarios/a.yaml\"\nmaterial:\n  mu: 0.3\n  mu_r: 0.2\neffects:\n  "
-            "cohesion:\n    bond_number: 1\n");
+  EXPECT_EQ(
+      scenario_patch("/data/scenarios/a.yaml", "/data/runs/x",
+                     {"material.mu=0.3", "effects.cohesion.bond_number=1", "material.mu_r=0.2"},
+                     {"What it is."}),
+      "# What it is.\nextends: \"../../scenarios/a.yaml\"\nmaterial:\n  mu: 0.3\n  mu_r: 0.2\neffects:\n  "
+      "cohesion:\n    bond_number: 1\n");
 }
 
 }  // namespace
