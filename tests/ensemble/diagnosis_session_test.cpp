@@ -6,6 +6,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <fstream>
+#include <map>
 #include <numbers>
 #include <set>
 
@@ -453,6 +454,36 @@ TEST_F(Session, EffectsThatCannotBeLookedForAreSaid) {
   EXPECT_EQ(all.find("cohesion"), all.effects.size());
   EXPECT_LT(all.find("twisting"), all.effects.size());
   EXPECT_THAT(said(all), testing::Contains("cohesion: the model gives it"));
+}
+
+// Rival effects are simulated with random numbers of their own, which do not depend on what else is looked
+// for.
+TEST_F(Session, EffectsHaveSeedsOfTheirOwn) {
+  write_text_file(
+      folder / "all.yaml",
+      "parameters: {material.mu: {nominal: 0.3, from: 0.2, to: 0.4}}\nexperiments: {dump: {scenario: " +
+          (fs::path(SCREE_SOURCE_DIR) / "scenarios/quick_dump.yaml").string() +
+          ", observables: [chi_S1]}}\n");
+  const auto loaded = load_model(folder / "all.yaml", kAssets);
+  ASSERT_TRUE(loaded.errors.empty()) << loaded.errors.front().text();
+  const std::vector<Dataset::Experiment> experiments{loaded.model.experiments.front().experiment};
+  const auto seeds_of = [&](const std::vector<std::string>& without) {
+    const ModelSpace space = space_of(loaded.model, experiments, without, kAssets);
+    std::map<std::string, std::set<std::uint64_t>> seeds;
+    for (const PlannedRun& run : design_of(space, loaded.model.simulations))
+      if (run.at.effects.size() == 1 && !space.effects[run.at.effects.front().effect].measures)
+        seeds[space.effects[run.at.effects.front().effect].name].insert(run.seed);
+    return seeds;
+  };
+  const auto all = seeds_of({});
+  ASSERT_GT(all.size(), 8u);
+  std::size_t count = 0;
+  std::set<std::uint64_t> together;
+  for (const auto& [effect, seeds] : all) count += seeds.size(), together.insert(seeds.begin(), seeds.end());
+  EXPECT_EQ(together.size(), count) << "no two effects share one";
+  auto others = all;
+  others.erase("cohesion");
+  EXPECT_EQ(seeds_of({"cohesion"}), others);
 }
 
 TEST_F(Session, WhatTheModelSaysInsteadOfAnExperimentIsSaid) {
