@@ -108,13 +108,14 @@ std::string velocity_table(const std::vector<CaseResult>& cases) {
   for (const VelocityTrend& each : velocity_trends(cases))
     rows += fmt::format(
         "<tr><td class=\"word\">{}</td><td class=\"word\">{}</td><td>{}</td><td>{}<small>{} to "
-        "{}</small></td><td>{}</td><td>{}</td><td>{}<small>{}, {} cases</small></td><td class=\"word "
+        "{}</small></td><td>{}</td><td>{}</td><td>{}<small>{} {} cases</small></td><td class=\"word "
         "{}\">{}</td></tr>\n",
         html_escaped(quantity_in_words(each.value.quantity)), each.value.section, each.runs,
         decimals_text(each.here.slope, 2), decimals_text(each.here.low, 2), decimals_text(each.here.high, 2),
         html_escaped(p_text(each.here.p)), html_escaped(p_text(each.order.p)),
-        decimals_text(each.printed_slope, 2), printed_interval(each.printed_half, false), each.printed.size(),
-        look(each.verdict).style, look(each.verdict).words);
+        decimals_text(each.printed_slope, 2),
+        std::isfinite(each.printed_slope) ? printed_interval(each.printed_half, false) + "," : "",
+        each.printed.size(), look(each.verdict).style, look(each.verdict).words);
   if (rows.empty()) return rows;
   return "<h2>Velocity of the blade</h2>\n<p>Least squares over all seeds of all cases of push dumping, with "
          "the 95 % interval of the slope and p of no slope (t, n − 2 degrees of freedom); p of no order by "

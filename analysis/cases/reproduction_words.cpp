@@ -77,7 +77,7 @@ TrendLook look(TrendVerdict verdict) {
     case TrendVerdict::unknown:
       break;
   }
-  return {"unknown", "not judged: two seeds of both are needed"};
+  return {"unknown", "not judged: too few runs or printed values"};
 }
 
 ReproductionWords reproduction_in_words(const std::vector<CaseResult>& cases,
