@@ -1,4 +1,8 @@
 // Collisions of spheres with each other and with a wall, and what they keep.
+#include <filesystem>
+
+#include "scree_version.h"
+#include "sim/material/csv_table.h"
 #include "tests/verification/scene.h"
 
 namespace scree::verification {
@@ -90,6 +94,36 @@ TEST(ObliqueImpact, SticksBelowTheLimitOfGrossSliding) {
   const double vx = 0.9 * (7 - k_star) * mu;
   const Oblique out = oblique_impact(vx, mu, 1e-5);
   EXPECT_GT(out.vx, vx - 2 * mu + 1e-3);  // less than full friction was used
+}
+
+// Speed along a plate, after over before, as measured: where the sphere slides throughout, from 30 degrees
+// on, that of the formula above. Where it sticks the shear stiffness decides: kn/ks is (2 - nu) / (2 (1 -
+// nu)) = 1.15 for small slips of elastic spheres (Mindlin 1949, nu 0.23), and 2.5 in the thesis.
+TEST(ObliqueImpact, LeavesTheSpeedThatIsMeasured) {
+  constexpr double kSpeed = 3.9, kFriction = 0.092, kRestitution = 0.98, kRadius = 2.5e-3;
+  WorldSettings settings = weightless(2e-8);
+  settings.material.density = 4000;
+  settings.material.effective_modulus = 1e9;
+  settings.material.stiffness_ratio = 1.15;
+  settings.material.normal_damping_ratio = 0.00646;  // restitution 0.98 (Schwager & Poeschel 2007, eq. 21)
+  CsvTable measured(std::filesystem::path(SCREE_SOURCE_DIR) / "tests/verification/kharaz_2001.csv",
+                    {"incidence_deg", "tangential_restitution"});
+  int rows = 0;
+  for (; measured.next(); ++rows) {
+    const double degrees = measured.number("incidence_deg"), angle = degrees * kPi / 180;
+    RrlinearWorld world(settings);
+    world.add_spheres(
+        {ball({0, 0, kRadius + 1e-6}, kRadius, {kSpeed * std::sin(angle), 0, -kSpeed * std::cos(angle)})});
+    add_floor(world, {kFriction, 0}, 1);
+    world.advance_to(1e-4);
+    const double left = velocity_of(world, 0).x() / (kSpeed * std::sin(angle));
+    EXPECT_NEAR(velocity_of(world, 0).z(), kRestitution * kSpeed * std::cos(angle), 0.002 * kSpeed);
+    EXPECT_NEAR(left, measured.number("tangential_restitution"), degrees > 30 ? 0.01 : 0.1) << degrees;
+    if (degrees > 30) {
+      EXPECT_NEAR(left, 1 - kFriction * (1 + kRestitution) / std::tan(angle), 0.002) << degrees;
+    }
+  }
+  EXPECT_EQ(rows, 8);
 }
 
 // Two equal spheres that meet head-on with equal spin (Chung & Ooi, test 7): contact points move apart at 2
