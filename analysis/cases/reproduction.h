@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/cases/printed_scatter.h"
 #include "analysis/report/profile_chart.h"
 #include "analysis/results/finished_runs.h"
 #include "analysis/results/outputs.h"
@@ -45,17 +46,13 @@ struct Trend {
   std::string source;
 };
 
-/// PFC3D's printed mean of `value` in a case, with deviation (NaN when not printed) and number of repeats (0
-/// when not stated). None if the mean is not printed or nothing of the case was compared.
-std::optional<MeanStd> printed_mean(const CaseResult& result, const PileValue& value);
-
 /// What seeds can say of a printed difference.
 enum class TrendVerdict {
   unknown,     ///< fewer than two seeds of a case, or no scatter
   agrees,      ///< beyond the scatter of seeds, in the printed direction, and of the printed size
   other_size,  ///< beyond the scatter, in the printed direction, of another size
-  opposite,    ///< beyond the scatter, in the other direction
-  undecided,   ///< seeds alone may differ so much, and the printed size is not excluded
+  opposite,    ///< beyond the scatter, in the other direction, and the printed size is excluded
+  undecided,   ///< ours and the printed difference can be the same, and either can be none
   not_seen,    ///< seeds alone may differ so much, and the printed size is excluded
   within,      ///< of a bound: the whole interval lies within it
   beyond,      ///< of a bound: the whole interval lies beyond it
@@ -70,8 +67,8 @@ struct VelocityTrend {
   Slope here;                                      ///< per m/s
   JonckheereTerpstra order;                        ///< groups by velocity
   std::vector<ChartSeries::Point> means, printed;  ///< over velocity in m/s: of seeds, and PFC3D's
-  double printed_slope = 0;  ///< least squares over PFC3D's printed means; NaN without two
-  double printed_half = 0;   ///< half of its 95 % interval, by PFC3D's repeats; 0: none is printed, exact
+  double printed_slope = 0;        ///< least squares over PFC3D's printed means; NaN without two
+  PrintedHalf printed_slope_half;  ///< by PFC3D's repeats
   TrendVerdict verdict = TrendVerdict::unknown;  ///< of the printed slope
 };
 /// Of chi and the D50 ratio at the crest; none unless there are three velocities.
@@ -85,7 +82,7 @@ TrendLook look(TrendVerdict verdict);
 
 /// What a difference with its 95 % interval and its p says of a printed one that is no bound, whose 95 %
 /// interval is `printed` +- `printed_half`. The printed size is excluded when the two differ by more than the
-/// halves of their intervals, added in squares.
+/// root of the sum of the squares of their intervals' halves.
 TrendVerdict judged(double difference, double low, double high, double p, double printed,
                     double printed_half);
 
@@ -94,11 +91,9 @@ struct TrendComparison {
   Trend trend;
   double difference = 0;  ///< ours, of the means over seeds; NaN when unknown
   double low = 0,
-         high = 0;          ///< its 95 % interval from the scatter of seeds (Welch; delta method for a ratio)
-  double printed_half = 0;  ///< half of the 95 % interval of the printed difference, from the scatter of
-                            ///< PFC3D's repeats, of a case whose scatter is not printed that of the other; 0:
-                            ///< none is printed, taken as exact
-  double p = 1;  ///< two-sided probability that seeds alone differ so much (Welch's t test)
+         high = 0;      ///< its 95 % interval from the scatter of seeds (Welch; delta method for a ratio)
+  PrintedHalf printed;  ///< of the printed difference, by PFC3D's repeats; of a bound none
+  double p = 1;         ///< two-sided probability that seeds alone differ so much (Welch's t test)
   TrendVerdict verdict = TrendVerdict::unknown;
 };
 

@@ -98,9 +98,10 @@ std::string signs_table(const std::vector<CaseResult>& cases) {
          rows + "</tbody></table></div>\n";
 }
 
-std::string printed_interval(double half, bool relative) {
-  if (!(half > 0)) return "taken as exact";
-  return "± " + (relative ? decimals_text(100 * half, 0) + " %" : decimals_text(half, 2));
+std::string printed_interval(const PrintedHalf& by, bool relative) {
+  if (!(by.half > 0)) return "no scatter printed";
+  return (by.at_most ? "± at most " : "± ") +
+         (relative ? decimals_text(100 * by.half, 0) + " %" : decimals_text(by.half, 2));
 }
 
 std::string velocity_table(const std::vector<CaseResult>& cases) {
@@ -114,21 +115,20 @@ std::string velocity_table(const std::vector<CaseResult>& cases) {
         decimals_text(each.here.slope, 2), decimals_text(each.here.low, 2), decimals_text(each.here.high, 2),
         html_escaped(p_text(each.here.p)), html_escaped(p_text(each.order.p)),
         decimals_text(each.printed_slope, 2),
-        std::isfinite(each.printed_slope) ? printed_interval(each.printed_half, false) + "," : "",
+        std::isfinite(each.printed_slope) ? printed_interval(each.printed_slope_half, false) + "," : "",
         each.printed.size(), look(each.verdict).style, look(each.verdict).words);
   if (rows.empty()) return rows;
   return "<h2>Velocity of the blade</h2>\n<p>Least squares over all seeds of all cases of push dumping, with "
-         "the 95 % interval of the slope and p of no slope (t, n − 2 degrees of freedom); p of no order by "
-         "the "
-         "test of Jonckheere and Terpstra (normal approximation with ties). Both are two-sided. PFC3D's "
-         "slope "
-         "is that of its printed means; ± is half of its 95 % interval, by the scatter of its repeats, where "
-         "one is "
-         "printed (that of the others where not).</p>\n<div class=\"wide\"><table><thead><tr><th "
+         "the 95 % interval of the slope "
+         "and p of no slope (t, n − 2 degrees of freedom); p of no order by the test of Jonckheere and "
+         "Terpstra (normal approximation with "
+         "ties). Both are two-sided. PFC3D's slope is that of its printed means; ± is half of its 95 % "
+         "interval, by the printed scatter of its "
+         "repeats; a case without one takes the mean of the others'.</p>\n<div "
+         "class=\"wide\"><table><thead><tr><th "
          "class=\"word\">Quantity</th><th class=\"word\">Section</th><th>Runs</th><th>Slope per "
-         "m/s</th><th>p "
-         "of the slope</th><th>p of the order</th><th>PFC3D's slope</th><th "
-         "class=\"word\">Verdict</th></tr></thead><tbody>\n" +
+         "m/s</th><th>p of the slope</th><th>p of the "
+         "order</th><th>PFC3D's slope</th><th class=\"word\">Verdict</th></tr></thead><tbody>\n" +
          rows + "</tbody></table></div>\n";
 }
 
@@ -136,19 +136,17 @@ std::string trends_table(const std::vector<TrendComparison>& trends) {
   if (trends.empty()) return "";
   std::string out =
       "<h2>Differences between cases</h2>\n<p>p is the probability that seeds alone differ so much (Welch's "
-      "t "
-      "test); below 0.05 a difference is taken to be beyond their scatter, which one in twenty is by chance. "
-      "Percentages are over the magnitude of the "
-      "second "
-      "case's value. ± is half of the 95 % interval of a printed difference, by the scatter of PFC3D's "
-      "repeats (of a "
-      "case whose scatter is not printed that of the other). A printed size is excluded when the two differ "
-      "by more "
-      "than both halves added in squares.</p>\n<div class=\"wide\"><table><thead><tr><th "
-      "class=\"word\">Case</th><th "
-      "class=\"word\">against</th><th class=\"word\">Quantity</th><th "
-      "class=\"word\">Section</th><th>Printed</th>"
-      "<th>Here</th><th>p</th><th class=\"word\">Verdict</th><th "
+      "t test); below 0.05 a difference "
+      "is taken to be beyond their scatter, which one in twenty is by chance. Percentages are over the "
+      "magnitude of the second case's value. ± "
+      "is half of the 95 % interval of a printed difference, by the printed scatter of PFC3D's repeats; a "
+      "case without one takes the other's, "
+      "and where only a bound of it is printed that stands for it. A printed size is excluded when the two "
+      "differ by more than the root of the "
+      "sum of the squares of both halves. Bounds (≤) are taken as exact.</p>\n<div "
+      "class=\"wide\"><table><thead><tr><th "
+      "class=\"word\">Case</th><th class=\"word\">against</th><th class=\"word\">Quantity</th><th "
+      "class=\"word\">Section</th><th>Printed</th><th>Here</th><th>p</th><th class=\"word\">Verdict</th><th "
       "class=\"word\">Source</th></tr></thead><tbody>\n";
   for (const TrendComparison& row : trends) {
     const Trend& t = row.trend;
@@ -164,7 +162,7 @@ std::string trends_table(const std::vector<TrendComparison>& trends) {
         "{}\">{}</td><td class=\"word\">{}</td></tr>\n",
         html_escaped(t.case_name), html_escaped(t.against), html_escaped(quantity_in_words(t.quantity)),
         html_escaped(t.section), t.bound ? "|·| ≤ " : "", text(t.difference),
-        t.bound ? "" : printed_interval(row.printed_half, t.relative), text(row.difference), text(row.low),
+        t.bound ? "" : printed_interval(row.printed, t.relative), text(row.difference), text(row.low),
         text(row.high), html_escaped(p_text(row.p)), look(row.verdict).style, look(row.verdict).words,
         html_escaped(t.source));
   }

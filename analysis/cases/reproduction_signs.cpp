@@ -3,39 +3,17 @@
 #include <map>
 
 #include "analysis/cases/reproduction.h"
-#include "analysis/statistics/welch.h"
 
 namespace scree {
 namespace {
-
-// Half of the 95 % interval of the least squares slope over these means, of which each scatters by its
-// deviation over the root of its repeats: slope = sum (x - mean x) y / sum (x - mean x)^2. A mean without a
-// printed scatter has that of the others (in squares), and t as many degrees of freedom as these have
-// together. 0 without any.
-double half_of_slope(const std::vector<double>& x, const std::vector<MeanStd>& printed) {
-  const auto scatters = [](const MeanStd& each) { return each.n > 1 && each.std > 0; };
-  double others = 0, freedom = 0;
-  int known = 0;
-  for (const MeanStd& each : printed)
-    if (scatters(each)) others += each.std * each.std / each.n, freedom += each.n - 1, ++known;
-  if (known == 0) return 0;
-  others /= known;
-  const double mean_x = mean_std(x).mean;
-  double xx = 0, sum = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    const double arm2 = (x[k] - mean_x) * (x[k] - mean_x);
-    xx += arm2;
-    sum += arm2 * (scatters(printed[k]) ? printed[k].std * printed[k].std / printed[k].n : others);
-  }
-  return xx > 0 ? t_95(freedom) * std::sqrt(sum) / xx : 0;
-}
 
 VelocityTrend trend_of(const PileValue& value, std::vector<const CaseResult*> cases) {
   VelocityTrend trend;
   trend.value = value;
   std::map<double, std::vector<double>> groups;
   std::vector<double> velocities, values;
-  std::vector<MeanStd> repeats;
+  std::vector<double> every_velocity;
+  std::vector<PrintedMean> repeats;
   for (const CaseResult* each : cases) {
     for (const Outputs& seed : each->runs.seeds)
       if (const auto number = output_for(value, seed)) {
@@ -43,10 +21,10 @@ VelocityTrend trend_of(const PileValue& value, std::vector<const CaseResult*> ca
         velocities.push_back(*each->blade_velocity);
         values.push_back(*number);
       }
-    if (const auto printed = printed_mean(*each, value)) {
-      trend.printed.push_back({*each->blade_velocity, printed->mean, printed->std});
-      repeats.push_back(*printed);
-    }
+    repeats.push_back(printed_mean(each->comparison, value));
+    every_velocity.push_back(*each->blade_velocity);
+    if (const PrintedMean& printed = repeats.back(); printed.mean)
+      trend.printed.push_back({*each->blade_velocity, *printed.mean, printed.std.value_or(std::nan(""))});
   }
   trend.first = cases.front()->name, trend.last = cases.back()->name;
   trend.runs = values.size();
@@ -64,24 +42,14 @@ VelocityTrend trend_of(const PileValue& value, std::vector<const CaseResult*> ca
     printed.push_back(point.y);
   }
   trend.printed_slope = slope_of(printed_velocities, printed).slope;
-  trend.printed_half = half_of_slope(printed_velocities, repeats);
+  trend.printed_slope_half = half_of_slope(every_velocity, repeats);
   if (std::isfinite(trend.printed_slope) && std::isfinite(trend.here.p))
     trend.verdict = judged(trend.here.slope, trend.here.low, trend.here.high, trend.here.p,
-                           trend.printed_slope, trend.printed_half);
+                           trend.printed_slope, trend.printed_slope_half.half);
   return trend;
 }
 
 }  // namespace
-
-std::optional<MeanStd> printed_mean(const CaseResult& result, const PileValue& value) {
-  for (const Comparison& row : result.comparison) {
-    const ReferenceValue& r = row.reference;
-    if (r.quantity == value.quantity && r.section == value.section && r.kind == "pfc3d" &&
-        meaning_of(r) == Meaning::value)
-      return MeanStd{r.value, r.std.value_or(std::nan("")), r.repeats};
-  }
-  return std::nullopt;
-}
 
 std::vector<SegregationSigns> segregation_signs(const std::vector<CaseResult>& cases) {
   std::vector<SegregationSigns> all;
@@ -99,7 +67,7 @@ std::vector<SegregationSigns> segregation_signs(const std::vector<CaseResult>& c
     signs.crest = mean_std(crest), signs.toe = mean_std(toe);
     signs.p_crest = p_of_sign(signs.crest, -1), signs.p_toe = p_of_sign(signs.toe, +1);
     signs.zero = spread_of(each.runs.seeds, "chi_zero_x_over_l");
-    if (const auto printed = printed_mean(each, {"xl_chi_zero", "whole"})) signs.printed_zero = printed->mean;
+    signs.printed_zero = printed_mean(each.comparison, {"xl_chi_zero", "whole"}).mean;
     all.push_back(std::move(signs));
   }
   return all;

@@ -38,6 +38,13 @@ std::string in_words(const SegregationSigns& signs) {
                      signs.printed_zero ? fmt::format(" (printed {:.2g})", *signs.printed_zero) : "");
 }
 
+std::string interval_in_words(const VelocityTrend& trend) {
+  const PrintedHalf& by = trend.printed_slope_half;
+  if (!(by.half > 0)) return ", taken as exact: no scatter is printed";
+  return fmt::format(" ({}95 % {:+.2f} to {:+.2f})", by.at_most ? "at most " : "",
+                     trend.printed_slope - by.half, trend.printed_slope + by.half);
+}
+
 std::string in_words(const VelocityTrend& trend) {
   const Slope& s = trend.here;
   return fmt::format(
@@ -49,10 +56,8 @@ std::string in_words(const VelocityTrend& trend) {
                       : fmt::format(" (95 % {:+.2f} to {:+.2f}, p {})", s.low, s.high, p_text(s.p)),
       p_text(trend.order.p),
       trend.printed.size() > 1
-          ? fmt::format(
-                "; PFC3D's slope {:+.2f}{} ({} cases printed): {}", trend.printed_slope,
-                trend.printed_half > 0 ? fmt::format(" +- {:.2f}", trend.printed_half) : ", taken as exact",
-                trend.printed.size(), look(trend.verdict).words)
+          ? fmt::format("; PFC3D's slope {:+.2f}{} ({} cases printed): {}", trend.printed_slope,
+                        interval_in_words(trend), trend.printed.size(), look(trend.verdict).words)
           : "");
 }
 
@@ -73,7 +78,7 @@ TrendLook look(TrendVerdict verdict) {
     case TrendVerdict::not_seen:
       return {"differs", "none seen, and the printed size is excluded"};
     case TrendVerdict::undecided:
-      return {"unknown", "not decided by these seeds"};
+      return {"unknown", "not decided"};
     case TrendVerdict::unknown:
       break;
   }
@@ -126,7 +131,7 @@ ReproductionWords reproduction_in_words(const std::vector<CaseResult>& cases,
     words.counts.push_back(fmt::format(
         "of {} printed differences between cases {} agree in direction and size, {} in direction alone, {} "
         "bounds are kept; {} go the other way, {} are not seen and their printed size is excluded, {} "
-        "broken; {} are not decided by these seeds, {} not judged",
+        "broken; {} are not decided, {} not judged",
         trends.size(), verdicts[TrendVerdict::agrees], verdicts[TrendVerdict::other_size],
         verdicts[TrendVerdict::within], verdicts[TrendVerdict::opposite], verdicts[TrendVerdict::not_seen],
         counted_text(static_cast<std::size_t>(verdicts[TrendVerdict::beyond]), "bound") +

@@ -30,47 +30,30 @@ MeanStd spread(const CaseResult& result, const Trend& trend) {
 
 TrendVerdict verdict_of(const TrendComparison& c) {
   const double printed = c.trend.difference;
-  if (!c.trend.bound) return judged(c.difference, c.low, c.high, c.p, printed, c.printed_half);
+  if (!c.trend.bound) return judged(c.difference, c.low, c.high, c.p, printed, c.printed.half);
   if (c.low > printed || c.high < -printed) return TrendVerdict::beyond;
   return c.low >= -printed && c.high <= printed ? TrendVerdict::within : TrendVerdict::undecided;
 }
 
-// Of a relative difference the scale scatters, too: var(a / b) = va / b^2 + a^2 vb / b^4.
-double error_of_ratio(double ratio, double va, double vb, double scale) {
-  return std::sqrt(va + ratio * ratio * vb) / scale;
-}
-
-// Of the printed difference, if there is a printed scatter: of a case that has none it is that of the other.
-double printed_half(const CaseResult& here, const CaseResult& there, const Trend& trend, double our_scale) {
-  const PileValue value{trend.quantity, trend.section};
-  std::optional<MeanStd> a = printed_mean(here, value), b = printed_mean(there, value);
-  const auto scatters = [](const std::optional<MeanStd>& printed) {
-    return printed && printed->n > 1 && printed->std > 0;
-  };
-  if (!scatters(a) && !scatters(b)) return 0;
-  const double mean = b ? b->mean : our_scale;
-  if (!scatters(a)) a = b;
-  if (!scatters(b)) b = a;
-  const Welch test = welch(*a, *b);
-  if (!trend.relative) return test.t_95 * test.error;
-  const double ratio = 1 + std::copysign(1.0, mean) * trend.difference;
-  return test.t_95 * error_of_ratio(ratio, a->std * a->std / a->n, b->std * b->std / b->n, std::abs(mean));
-}
-
 TrendComparison compared(const Trend& trend, const CaseResult& here, const CaseResult& there) {
-  TrendComparison result{trend};
+  TrendComparison result;
+  result.trend = trend;
   const MeanStd a = spread(here, trend), b = spread(there, trend);
   result.difference = result.low = result.high = result.p = std::nan("");
+  const PileValue value{trend.quantity, trend.section};
+  if (!trend.bound)
+    result.printed =
+        half_of_difference(printed_mean(here.comparison, value), printed_mean(there.comparison, value),
+                           trend.relative, trend.difference, b.mean);
   const double scale = trend.relative ? std::abs(b.mean) : 1;
   const Welch test = welch(a, b);
   if (!test.known || !(scale > 0)) return result;
-  const double error = trend.relative
-                           ? error_of_ratio(a.mean / b.mean, a.std * a.std / a.n, b.std * b.std / b.n, scale)
-                           : test.error;
+  // Of a relative difference the scale scatters, too: var(a / b) = va / b^2 + a^2 vb / b^4.
+  const Welch scaled = trend.relative ? welch(a, {b.mean, std::abs(a.mean / b.mean) * b.std, b.n}) : test;
+  const double half = scaled.t_95 * scaled.error / scale;
   result.difference = test.difference / scale;
-  result.low = result.difference - test.t_95 * error, result.high = result.difference + test.t_95 * error;
+  result.low = result.difference - half, result.high = result.difference + half;
   result.p = test.p;
-  if (!trend.bound) result.printed_half = printed_half(here, there, trend, b.mean);
   result.verdict = verdict_of(result);
   return result;
 }
@@ -81,7 +64,7 @@ TrendVerdict judged(double difference, double low, double high, double p, double
                     double printed_half) {
   const bool inside = std::abs(difference - printed) <= std::hypot(0.5 * (high - low), printed_half);
   if (!(p < kSignificant)) return inside ? TrendVerdict::undecided : TrendVerdict::not_seen;
-  if (difference * printed < 0) return TrendVerdict::opposite;
+  if (difference * printed < 0) return inside ? TrendVerdict::undecided : TrendVerdict::opposite;
   return inside ? TrendVerdict::agrees : TrendVerdict::other_size;
 }
 

@@ -22,7 +22,7 @@ COPIES = ['psd_constraints.csv', 'lab_repose_pfc3d_summary.csv', 'lab_segregatio
 HEIGHTS = ['A1', 'A2', 'A3', 'A4']
 SPACINGS = ['lateral_S4', 'lateral_S8', 'lateral_S12']
 # Names of the tables and the cases they speak of.
-CASES = {name: [name] for name in ['A1', 'A3', 'A4', 'B1', 'C1', 'D1', 'D2', 'D6', *SPACINGS, 'cm_field_3sec',
+CASES = {name: [name] for name in ['A1', 'A3', 'A4', 'B1', 'C1', 'D1', 'D2', 'D5', 'D6', *SPACINGS, 'cm_field_3sec',
                                    'cm_field_6sec', 'lab_segregation']}
 CASES |= {'A1-A4': HEIGHTS, 'A1_D2': ['A1', 'D2'], 'D1-D6': ['D%d' % k for k in range(1, 7)],
           'lateral': SPACINGS, 'lateral_S4_S8_S12': SPACINGS, 'qb_field_5sec': ['qb_field_9sec']}

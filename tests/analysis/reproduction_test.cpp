@@ -41,7 +41,8 @@ TEST(Trends, WelchByHand) {
   EXPECT_EQ(compare_trends(cases, {trend})[0].verdict, TrendVerdict::not_seen);
   trend.relative = true;  // over |1|; deviation of 3 / 1 is sqrt(1/3 + 9 * 4/3)
   EXPECT_DOUBLE_EQ(compare_trends(cases, {trend})[0].difference, 2);
-  EXPECT_NEAR(compare_trends(cases, {trend})[0].high - 2, 3.220 * std::sqrt(1.0 / 3 + 12), 0.02);
+  // Its degrees of freedom: (1/3 + 12)^2 / ((1/3)^2 / 2 + 12^2 / 2) = 2.111, t 4.093.
+  EXPECT_NEAR(compare_trends(cases, {trend})[0].high - 2, 4.093 * std::sqrt(1.0 / 3 + 12), 0.02);
 }
 
 // chi of S1 as PFC3D's repeats have it.
@@ -55,23 +56,52 @@ TEST(Trends, ThePrintedDifferenceScattersLikeItsRepeats) {
   // Ours as above: 2 +- 4.157. Five repeats of a deviation of 1 in both: sqrt(2 / 5) with 8 degrees of
   // freedom (t 2.306), half of the interval 1.458; together sqrt(4.157^2 + 1.458^2) = 4.405.
   std::vector<CaseResult> cases{runs("b1", {2, 3, 4}), runs("a1", {-1, 1, 3})};
-  const auto print = [&](std::size_t k, const ReferenceValue& row) {
-    cases[k].comparison = compare_with_reference(cases[k].runs.seeds, {row}, {"D"});
+  const auto print = [&](std::size_t k, const std::vector<ReferenceValue>& rows) {
+    cases[k].comparison = compare_with_reference(cases[k].runs.seeds, rows, {"D"});
   };
   const auto judge = [&](double difference, bool relative) {
     return compare_trends(cases, {{"b1", "a1", "chi", "S1", difference, relative, false, "T"}})[0];
   };
-  print(0, printed_chi(5.4, 1, 5));
-  print(1, printed_chi(-1, 1, 5));
-  EXPECT_NEAR(judge(6.4, false).printed_half, 1.458, 1e-3);
+  print(0, {printed_chi(5.4, 1, 5)});
+  print(1, {printed_chi(-1, 1, 5)});
+  EXPECT_NEAR(judge(6.4, false).printed.half, 1.458, 1e-3);
   EXPECT_EQ(judge(6.38, false).verdict, TrendVerdict::undecided);
   EXPECT_EQ(judge(6.43, false).verdict, TrendVerdict::not_seen);
-  // Relative to the magnitude of -1: 0.28 more is 0.72 of it, and the deviation sqrt(1/5 + 0.72^2 / 5).
-  EXPECT_NEAR(judge(0.28, true).printed_half, 2.306 * std::sqrt((1 + 0.72 * 0.72) / 5), 1e-3);
-  print(0, printed_chi(5.4, std::nullopt, 5));
-  EXPECT_NEAR(judge(6.4, false).printed_half, 1.458, 1e-3) << "that of the other case";
-  print(1, printed_chi(-1, 1, 0));
-  EXPECT_EQ(judge(6.4, false).printed_half, 0) << "of how many repeats is not known";
+  // Relative to the magnitude of -1: 0.28 more is 0.72 of it, and the deviation sqrt(1/5 + 0.72^2 / 5);
+  // degrees of freedom (1 + 0.5184)^2 / ((1 + 0.5184^2) / 4) = 7.27, t 2.347.
+  EXPECT_NEAR(judge(0.28, true).printed.half, 2.347 * std::sqrt(1.5184 / 5), 1e-3);
+  // One that is not printed takes the other's, of which 4 degrees of freedom are known: t 2.776.
+  print(0, {printed_chi(5.4, std::nullopt, 5)});
+  EXPECT_NEAR(judge(6.4, false).printed.half, 2.776 * std::sqrt(0.4), 1e-3);
+  EXPECT_FALSE(judge(6.4, false).printed.at_most);
+  // Or is a bound of its own.
+  ReferenceValue scatter = printed_chi(2, std::nullopt, 5);
+  scatter.quantity = "chi_scatter", scatter.relation = "max";
+  print(0, {printed_chi(5.4, std::nullopt, 5), scatter});
+  EXPECT_TRUE(judge(6.4, false).printed.at_most);
+  // sqrt(4/5 + 1/5), 25 / (17 / 4) = 5.88 degrees of freedom, t 2.459.
+  EXPECT_NEAR(judge(6.4, false).printed.half, 2.459, 1e-3);
+  // The scale |b| of a relative difference is PFC3D's, too: 5.4 is b + 6.4 |b|, so b is 0.7297.
+  print(0, {printed_chi(5.4, 1, 5)});
+  cases[1].comparison.clear();
+  EXPECT_NEAR(judge(6.4, true).printed.half, 2.776 * std::sqrt((1 + 7.4 * 7.4) / 5) / 0.7297, 1e-2);
+  print(1, {printed_chi(-1, 1, 0)});
+  print(0, {printed_chi(5.4, std::nullopt, 5)});
+  EXPECT_EQ(judge(6.4, false).printed.half, 0) << "of how many repeats is not known";
+}
+
+TEST(Trends, OppositeOnlyWhereThePrintedSizeIsExcluded) {
+  EXPECT_EQ(judged(-0.15, -0.25, -0.05, 0.01, 0.28, 0.5), TrendVerdict::undecided);
+  EXPECT_EQ(judged(-0.15, -0.25, -0.05, 0.01, 0.28, 0.1), TrendVerdict::opposite);
+}
+
+TEST(Trends, ScatterIsToldWhateverTheSeeds) {
+  std::vector<CaseResult> cases{runs("b1", {2}), runs("a1", {-1})};
+  for (CaseResult& each : cases)
+    each.comparison = compare_with_reference(each.runs.seeds, {printed_chi(1, 1, 5)}, {"D"});
+  const auto compared = compare_trends(cases, {{"b1", "a1", "chi", "S1", 1, false, false, "T"}});
+  EXPECT_EQ(compared[0].verdict, TrendVerdict::unknown);
+  EXPECT_NEAR(compared[0].printed.half, 1.458, 1e-3);
 }
 
 TEST(Trends, AreJudgedByDirectionSizeAndBound) {
@@ -185,7 +215,7 @@ TEST(VelocityTrend, OverAllSeedsBesidePfc3ds) {
   EXPECT_DOUBLE_EQ(trends[0].order.expected, 6);
   EXPECT_NEAR(trends[0].printed_slope, 0.5, 1e-12);
   // 1 over 2 m/s, both of a deviation of 0.3 in 4 repeats: sqrt(2 * 0.09 / 4) / 2, t of 3 degrees 3.182.
-  EXPECT_NEAR(trends[0].printed_half, 3.182 * std::sqrt(0.045) / 2, 1e-3);
+  EXPECT_NEAR(trends[0].printed_slope_half.half, 3.182 * std::sqrt(0.045) / 2, 1e-3);
   EXPECT_EQ(trends[0].verdict, TrendVerdict::undecided);
   ASSERT_EQ(trends[0].means.size(), 3u);
   EXPECT_EQ(trends[0].means[1].x, 2);
@@ -196,6 +226,22 @@ TEST(VelocityTrend, OverAllSeedsBesidePfc3ds) {
                          "(95 % -0.70 to +2.70, p 0.178); Jonckheere-Terpstra p 0.")));
   cases.pop_back();
   EXPECT_TRUE(velocity_trends(cases).empty()) << "two velocities are no trend";
+}
+
+// Slope sum (x - 2) y / 14 over 0, 1, 5: deviations of means 0.2, 0.6 and, taken from the others in squares,
+// sqrt(0.2), weighted 2, 1, 3; 4 + 3 degrees of freedom, t 2.365. A scatter without a mean counts among the
+// others.
+TEST(VelocityTrend, PrintedSlopeScattersLikeItsMeans) {
+  std::vector<PrintedMean> printed{
+      {1.0, 0.2 * std::sqrt(5), false, 5}, {2.0, 0.6 * std::sqrt(4), false, 4}, {3.0, {}, false, 5}};
+  EXPECT_NEAR(half_of_slope({0, 1, 5}, printed).half, 2.365 * std::sqrt(4 * 0.04 + 1 * 0.36 + 9 * 0.2) / 14,
+              1e-3);
+  printed.push_back(
+      {{}, 0.4 * std::sqrt(6), true, 6});  // 5 more degrees: t 2.179; others (0.04 + 0.36 + 0.16) / 3
+  const PrintedHalf more = half_of_slope({0, 1, 5, 9}, printed);
+  EXPECT_NEAR(more.half, 2.179 * std::sqrt(4 * 0.04 + 1 * 0.36 + 9 * 0.56 / 3) / 14, 1e-3);
+  EXPECT_TRUE(more.at_most);
+  EXPECT_EQ(half_of_slope({0, 1}, {{1.0, {}, false, 5}, {2.0, {}, false, 5}}).half, 0);
 }
 
 TEST(Reproduction, ReportHasItsTablesAndFigures) {
