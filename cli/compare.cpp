@@ -5,6 +5,7 @@
 
 #include "analysis/results/summary.h"
 #include "cli/commands.h"
+#include "cli/printed_values.h"
 #include "cli/table.h"
 
 int run_compare(const std::filesystem::path& dir, const std::vector<std::string>& cases) {
@@ -22,7 +23,9 @@ int run_compare(const std::filesystem::path& dir, const std::vector<std::string>
                file.string());
     return kBadInput;
   }
-  const auto reference = scree::read_reference(asset_dir() / "reference" / "results.csv");
+  const auto printed = printed_values();
+  if (!printed) return kBadInput;
+  const std::vector<scree::ReferenceValue>& reference = *printed;
   std::set<std::string> known;
   for (const auto& value : reference) known.insert(value.case_name);
   for (const std::string& name : cases)

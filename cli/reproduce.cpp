@@ -10,6 +10,8 @@
 #include "cli/ensemble_console.h"
 #include "cli/option_values.h"
 #include "cli/output_folder.h"
+#include "cli/printed_values.h"
+#include "sim/material/input_bytes.h"
 
 namespace fs = std::filesystem;
 
@@ -63,6 +65,16 @@ std::vector<scree::CaseResult> results_of(const std::vector<scree::PointResults>
   return cases;
 }
 
+// None, with a message, if the table cannot be read.
+std::optional<std::vector<scree::Trend>> read_printed_trends() {
+  try {
+    return scree::read_trends(asset_dir() / "reference" / "trends.csv");
+  } catch (const std::runtime_error& error) {
+    fmt::print(stderr, "scree: {}\n", scree::one_line(error.what()));
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 int run_reproduce(const ReproduceOptions& options) {
@@ -75,10 +87,9 @@ int run_reproduce(const ReproduceOptions& options) {
   if (!options.csv.empty() && !may_replace(options.csv, {options.from, store_file(options.ensemble.store)}))
     return kBadInput;
 
-  // Before hours of work, which they could spoil.
-  const fs::path folder = asset_dir() / "reference";
-  const std::vector<scree::ReferenceValue> reference = scree::read_reference(folder / "results.csv");
-  const std::vector<scree::Trend> printed_trends = scree::read_trends(folder / "trends.csv");
+  const auto reference = printed_values();
+  const auto printed_trends = read_printed_trends();
+  if (!reference || !printed_trends) return kBadInput;
   std::vector<scree::PointResults> points;
   scree::EnsembleProgress progress;
   if (!options.from.empty()) {
@@ -96,8 +107,8 @@ int run_reproduce(const ReproduceOptions& options) {
     points = scree::look_up(sweep, requests, *store);
   }
 
-  const auto cases = results_of(points, reference);
-  const auto trends = scree::compare_trends(cases, printed_trends);
+  const auto cases = results_of(points, *reference);
+  const auto trends = scree::compare_trends(cases, *printed_trends);
   if (!options.csv.empty()) {
     scree::write_sweep_csv(sweep, points, options.csv);
     fmt::print("table: {}\n", options.csv.string());

@@ -13,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/option_values.h"
 #include "cli/output_folder.h"
+#include "cli/printed_values.h"
 #include "cli/progress.h"
 #include "cli/results_of.h"
 #include "cli/run_folder.h"
@@ -130,8 +131,10 @@ std::optional<Plan> plan_resumed(const RunOptions& options) {
 
 std::optional<Plan> make_plan(const RunOptions& options) {
   try {
+    std::optional<std::vector<scree::ReferenceValue>> reference = printed_values();
+    if (!reference) return std::nullopt;
     std::optional<Plan> plan = options.resume.empty() ? plan_new(options) : plan_resumed(options);
-    if (plan) plan->reference = scree::read_reference(asset_dir() / "reference" / "results.csv");
+    if (plan) plan->reference = std::move(*reference);
     return plan;
   } catch (const std::runtime_error& error) {
     fmt::print(stderr, "scree: {}\n", scree::one_line(error.what()));

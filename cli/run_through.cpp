@@ -10,7 +10,8 @@ scree::RunThrough run_through(scree::ResultsStore& store, const EnsembleOptions&
   return [&store, options](const std::vector<scree::RunRequest>& runs, const std::string& what) {
     const bool all_there = std::all_of(runs.begin(), runs.end(), [&](const scree::RunRequest& run) {
       const auto found = store.find(run.key);
-      return found && found->state == scree::RunState::done;
+      return found && (found->state == scree::RunState::done ||
+                       (found->state == scree::RunState::failed && !options.again));
     });
     if (!all_there) fmt::print(stderr, "{}\n", what);
     const auto ended = ended_runs(runs, store, options);

@@ -12,6 +12,7 @@
 #include "cli/ensemble_console.h"
 #include "cli/option_values.h"
 #include "cli/output_folder.h"
+#include "cli/printed_values.h"
 
 namespace fs = std::filesystem;
 using scree::PointResults;
@@ -166,10 +167,10 @@ bool can_be_written(const SweepOptions& options, const scree::Sweep& sweep) {
 }
 
 // Tables and pictures of what is known.
-int show(const SweepOptions& options, const scree::Sweep& sweep, const std::vector<PointResults>& points) {
+int show(const SweepOptions& options, const scree::Sweep& sweep, const std::vector<PointResults>& points,
+         const std::vector<scree::ReferenceValue>& reference) {
   const std::vector<std::string> shown = options.output.empty() ? main_outputs(scree::output_names(points))
                                                                 : std::vector<std::string>{options.output};
-  const auto reference = scree::read_reference(asset_dir() / "reference" / "results.csv");
   std::vector<scree::SweepComparison> comparisons;
   for (const std::string& output : shown)
     comparisons.push_back(scree::compare_sweep(points, output, reference));
@@ -203,6 +204,8 @@ int run_sweep(const SweepOptions& options) {
       return kBadInput;
     }
   if (!can_be_written(options, sweep)) return kBadInput;
+  const auto reference = printed_values();
+  if (!reference) return kBadInput;
   if (!options.from.empty()) {
     std::vector<PointResults> points;
     try {
@@ -211,7 +214,7 @@ int run_sweep(const SweepOptions& options) {
       fmt::print(stderr, "{}\n", error.what());
       return kBadInput;
     }
-    return show(options, sweep, points);
+    return show(options, sweep, points, *reference);
   }
 
   const std::vector<scree::RunRequest> requests = scree::requests_of(sweep, asset_dir());
@@ -222,7 +225,7 @@ int run_sweep(const SweepOptions& options) {
   scree::EnsembleProgress progress;
   if (!only_look) progress = run_with_progress(requests, *store, options.ensemble);
 
-  const int shown = show(options, sweep, scree::look_up(sweep, requests, *store));
+  const int shown = show(options, sweep, scree::look_up(sweep, requests, *store), *reference);
   if (!only_look) fmt::print("store: {} ({} runs done here)\n", store->file().string(), progress.ended_here);
   if (interrupted) {
     fmt::print(stderr, "interrupted; the same command goes on from here\n");

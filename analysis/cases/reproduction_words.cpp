@@ -66,7 +66,7 @@ std::string in_words(const VelocityTrend& trend) {
 TrendLook look(TrendVerdict verdict) {
   switch (verdict) {
     case TrendVerdict::agrees:
-      return {"close", "same direction and size"};
+      return {"close", "same direction, size within both scatters"};
     case TrendVerdict::other_size:
       return {"agrees", "same direction, other size"};
     case TrendVerdict::opposite:
@@ -129,7 +129,7 @@ ReproductionWords reproduction_in_words(const std::vector<CaseResult>& cases,
   for (const TrendComparison& each : trends) ++verdicts[each.verdict];
   if (!trends.empty())
     words.counts.push_back(fmt::format(
-        "of {} printed differences between cases {} agree in direction and size, {} in direction alone, {} "
+        "of {} printed differences between cases {} agree in direction and, within both scatters, in size, {} in direction alone, {} "
         "bounds are kept; {} go the other way, {} are not seen and their printed size is excluded, {} "
         "broken; {} are not decided, {} not judged",
         trends.size(), verdicts[TrendVerdict::agrees], verdicts[TrendVerdict::other_size],

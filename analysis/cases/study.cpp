@@ -90,12 +90,15 @@ std::vector<StudyRank> rank_options(const std::vector<StudyOption>& options,
 }
 
 std::string study_answer(const std::vector<StudyOption>& options, const StudyCriterion& criterion) {
-  std::vector<std::string> first;
+  std::vector<std::string> first, unranked;
   const StudyRank* best = nullptr;
   const StudyRank* next = nullptr;
   const std::vector<StudyRank> ranks = rank_options(options, criterion);
   for (const StudyRank& rank : ranks) {
-    if (!rank.rank) continue;
+    if (!rank.rank) {
+      unranked.push_back(fmt::format("{} ({:.3g})", options[rank.option].name, rank.value.mean));
+      continue;
+    }
     if (best == nullptr) best = &rank;
     if (*rank.rank == 1)
       first.push_back(options[rank.option].name);
@@ -108,14 +111,20 @@ std::string study_answer(const std::vector<StudyOption>& options, const StudyCri
     return fmt::format("{:.3g} ± {:.2g}", rank.value.mean, rank.value.std);
   };
   const std::string behind =
-      next == nullptr ? "" : fmt::format("; then {}, {}", options[next->option].name, value(*next));
+      (next == nullptr ? "" : fmt::format("; then {}, {}", options[next->option].name, value(*next))) +
+      (unranked.empty() ? "" : fmt::format("; not ranked, with one run: {}", fmt::join(unranked, ", ")));
+  if (first.size() == 1 && next == nullptr)
+    return fmt::format("Of {} alone {} is known with its scatter: {}{}.", first.front(), criterion.words,
+                       value(*best), behind);
   if (first.size() == 1)
     return fmt::format("{} is best by {}: {}{}.", first.front(), criterion.words, value(*best), behind);
   return fmt::format(
-      "These runs do not tell {} apart by {}: their differences to the smallest mean, {} of {}, are within "
+      "These runs do not tell {} and {} apart by {}: their differences to the smallest mean, {} of {}, are "
+      "within "
       "the "
       "scatter of seeds{}.",
-      fmt::join(first, ", "), criterion.words, value(*best), options[best->option].name, behind);
+      fmt::join(first.begin(), first.end() - 1, ", "), first.back(), criterion.words, value(*best),
+      options[best->option].name, behind);
 }
 
 std::vector<std::string> study_in_words(const std::vector<StudyOption>& options,

@@ -33,11 +33,11 @@ bool joined(const ReferenceValue& row, std::vector<ReferenceValue>& values) {
 
 // 0 where nothing stands.
 int optional_count(CsvTable& table, const char* column) {
-  const double count = table.optional_number(column).value_or(0);
-  const bool whole = count == std::floor(count) && count >= 1 && count <= kMostCounted;
-  if (!whole && table.optional_number(column))
-    table.fail(fmt::format("{} {} is no whole number from 1 to {}", column, count, kMostCounted));
-  return static_cast<int>(count);
+  const std::optional<double> count = table.optional_number(column);
+  if (!count) return 0;
+  if (*count != std::floor(*count) || *count < 1 || *count > kMostCounted)
+    table.fail(fmt::format("{} {} is no whole number from 1 to {}", column, *count, kMostCounted));
+  return static_cast<int>(*count);
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ struct ReferenceValue {
   int dumps = 0;  ///< number of dumps in the pile it was read from; 0: not stated
   std::optional<double> upper_std = std::nullopt;  ///< of `upper`, as std and rounding are of `value`
   double upper_rounding = 0;
-  int repeats = 0;  ///< of which `value` is the mean and `std` the deviation; 0: not stated
+  int repeats = 0;  ///< simulations behind `value`; 0: not given
 };
 
 /// Into how many sections the slope of a printed case was cut: told by the names top, middle, bottom (3) or

@@ -414,7 +414,7 @@ void DiagnosisSession::explore(const std::vector<ModelPoint>& points, const RunT
                                DiagnosisOutcome& outcome) {
   std::vector<PlannedRun> planned;
   for (const ModelPoint& point : points) planned.push_back({point, kCheckSeeds + ++checks_});
-  learn_from(in_every_experiment(planned), "what the data leave open of what may be named", run, outcome);
+  learn_from(in_every_experiment(planned), "where the effects that lead are least known", run, outcome);
 }
 
 std::vector<NextMeasurement> DiagnosisSession::tell_apart(const DiagnosisOutcome& outcome) const {

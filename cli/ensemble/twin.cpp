@@ -30,8 +30,6 @@ std::vector<Dataset::Experiment> experiments_of(const DiagnosisModel& model) {
   return all;
 }
 
-constexpr const char* kHidden = "the hidden truth";  // whatever it is
-
 // The runs of all experiments; their results by experiment.
 std::vector<std::vector<std::optional<StoredResult>>> done(const std::vector<ExperimentRuns>& runs,
                                                            const std::string& what, const RunThrough& run) {
@@ -202,7 +200,7 @@ class TwinMaker {
       for (const auto& effects : {std::vector<EffectAt>{there}, std::vector<EffectAt>{}})
         both.push_back(runs_at(e, {base, effects}, kStrengthSeeds, 0,
                                space_.effects[there.effect].acts_in(experiments_[e].name) ? pairs : 0));
-    const auto ended = done(both, kHidden, hidden_);
+    const auto ended = done(both, "the hidden truth: how strong it is", hidden_);
     Eigen::VectorXd change = Eigen::VectorXd::Zero(covariance_.rows());
     Eigen::MatrixXd unsure = Eigen::MatrixXd::Zero(covariance_.rows(), covariance_.rows());
     Eigen::Index begin = 0;
@@ -289,7 +287,7 @@ class TwinMaker {
         tried[e] += lack;
       }
       if (runs.empty()) return measured;
-      const auto ended = done(runs, kHidden, hidden_);
+      const auto ended = done(runs, "the hidden truth: its measurements", hidden_);
       for (std::size_t k = 0; k < which.size(); ++k)
         for (DesignRun& run : gather(runs[k], ended[k], outputs_of(which[k])).runs)
           measured[which[k]].push_back(std::move(run));

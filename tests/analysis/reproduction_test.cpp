@@ -258,7 +258,7 @@ TEST(Reproduction, ReportHasItsTablesAndFigures) {
   std::ifstream in(folder / "report.html");
   std::ostringstream page;
   page << in.rdbuf();
-  for (const char* text : {"same direction and size", "2 of 2" /* seeds with both signs */, "p of χ &lt; 0",
+  for (const char* text : {"same direction, size within both scatters", "2 of 2" /* seeds with both signs */, "p of χ &lt; 0",
                            "x/L where χ changes sign", "figure 6.7 of the thesis"})
     EXPECT_NE(page.str().find(text), std::string::npos) << text;
   EXPECT_TRUE(fs::exists(folder / "pictures" / "payload_chi.svg"));

@@ -50,7 +50,7 @@ TEST(Study, DifferencesWithinTheScatterAreTies) {
   EXPECT_THAT(study_in_words(options, *study_criterion("chi_range")),
               testing::Contains(testing::HasSubstr("1. good: 1 +- 0.1 (tie)")));
   EXPECT_EQ(study_answer(options, *study_criterion("chi_range")),
-            "These runs do not tell good, as good apart by χ of the toe less χ of the crest: their "
+            "These runs do not tell good and as good apart by χ of the toe less χ of the crest: their "
             "differences to the "
             "smallest mean, 1 ± 0.1 of good, are within the scatter of seeds; then worst, 2 ± 0.1.");
 }
@@ -68,7 +68,11 @@ TEST(Study, OneSeedIsNotRanked) {
   EXPECT_THAT(study_in_words(options, *study_criterion("chi_range")),
               testing::Contains("one: 0.6 (not ranked: of one run the scatter is not known)"));
   EXPECT_EQ(study_answer(options, *study_criterion("chi_range")),
-            "three is best by χ of the toe less χ of the crest: 1.55 ± 0.071; then two, 2.55 ± 0.071.");
+            "three is best by χ of the toe less χ of the crest: 1.55 ± 0.071; then two, 2.55 ± 0.071; not "
+            "ranked, with one run: one (0.6).");
+  EXPECT_EQ(study_answer({option("one", {-0.1}), option("two", {-2.0, -2.1})}, *study_criterion("chi_range")),
+            "Of two alone χ of the toe less χ of the crest is known with its scatter: 2.55 ± 0.071; not "
+            "ranked, with one run: one (0.6).");
   EXPECT_EQ(study_answer({option("one", {-0.1})}, *study_criterion("chi_range")),
             "No option is ranked by χ of the toe less χ of the crest yet: it takes two runs of each.");
 }

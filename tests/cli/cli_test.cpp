@@ -33,6 +33,30 @@ class Cli : public testing::Test {
       " --set experiment.bench.top_length_m=10 --set experiment.bench.floor_length_m=15";
 };
 
+// Hours of simulation must not end at a table that could have been read before.
+TEST_F(Cli, PrintedValuesAreReadBeforeAnythingIsSimulated) {
+  const fs::path assets = folder / "assets";
+  fs::copy(fs::path(SCREE_SOURCE_DIR) / "assets", assets, fs::copy_options::recursive);
+  fs::create_directory_symlink(fs::path(SCREE_SOURCE_DIR) / "scenarios", folder / "scenarios");
+  std::ofstream(assets / "reference" / "results.csv") << "case,value\n";
+  setenv("SCREE_ASSETS", assets.c_str(), 1);
+  const fs::path out = folder / "run", store = folder / "store.sqlite";
+  std::ofstream(folder / "sweep.yaml") << "scenario: " SCREE_SOURCE_DIR
+                                          "/scenarios/quick_dump.yaml\nseeds: [1]\n"
+                                          "design: {type: grid, parameters: {material.mu: [0.3]}}\n";
+  for (const std::string& command :
+       {"run " + small + " --out " + out.string(),
+        "reproduce a1 --store " + store.string() + " --out " + out.string(),
+        "sweep " + (folder / "sweep.yaml").string() + " --store " + store.string()}) {
+    const Called called = call(command);
+    EXPECT_EQ(called.code, 2) << command;
+    EXPECT_NE(called.text.find("results.csv:1: the header must be"), std::string::npos) << called.text;
+    EXPECT_FALSE(fs::exists(out)) << command;
+    EXPECT_FALSE(fs::exists(store)) << command;
+  }
+  unsetenv("SCREE_ASSETS");
+}
+
 TEST_F(Cli, RunWritesWhatItPromises) {
   const fs::path out = folder / "run";
   const Called run = call("run " + small + " --seeds 2 --out " + out.string());

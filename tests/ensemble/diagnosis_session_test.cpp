@@ -194,6 +194,7 @@ TEST_F(Session, TakesNoMoreRoundsThanTheModelAllows) {
   const TwinSpec spec{{"cohesion"}, 6, 5, 0.5, 3, ""};
   simulator.fits_are_off_by = 4;  // so that fits move
   EXPECT_GT(diagnosed(spec).rounds, 1);
+  ASSERT_GT(simulator.stages.size(), 1u);
   EXPECT_EQ(simulator.stages.front(), "before the data are looked at: the base model and every effect");
   EXPECT_EQ(simulator.stages[1],
             fmt::format("round 1 of at most {}: no effect (re-calibration alone), at its fit",

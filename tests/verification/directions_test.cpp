@@ -1,6 +1,8 @@
 // Space has no directions of its own: a scene that is turned, or seen in a mirror, goes the same way, turned
-// or mirrored. A wrong sign of a moment or of a history that turns with its contact does not.
+// or mirrored. It does not where one component is wrong, an axis of the world is meant instead of the
+// contact's, or a spin is taken for a vector like others.
 #include <Eigen/Geometry>
+#include <utility>
 
 #include "tests/verification/scene.h"
 
@@ -44,10 +46,9 @@ TEST(Directions, ASceneGoesTheSameWayTurnedAndMirrored) {
   Random random(7, 0, RandomPurpose::positions);
   // Histories are in single precision: 6e-8 of a force, which every impact after it amplifies.
   for (int trial = 0; trial < 6; ++trial) {
-    Eigen::Matrix3d q = Eigen::Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1),
-                                           random.uniform(-1, 1), random.uniform(-1, 1))
-                            .normalized()
-                            .toRotationMatrix();
+    Eigen::Vector4d turn;
+    for (double& each : turn) each = random.uniform(-1, 1);
+    Eigen::Matrix3d q = Eigen::Quaterniond(turn).normalized().toRotationMatrix();
     if (trial % 2 == 1) q.col(1) *= -1;  // a mirror
     const auto there = thrown(q), here = thrown(upright);
     for (const double time : {0.05, 0.1, 0.2, 0.4}) {
@@ -62,8 +63,8 @@ TEST(Directions, ASceneGoesTheSameWayTurnedAndMirrored) {
             << trial << ' ' << time << ' ' << k;
       }
     }
-    // They have met: the first is the only one that was on its way towards +x and +y.
-    EXPECT_LT(velocity_of(*here, 0).x(), 0.9);
+    // They have met: friction with the plate alone would leave the first 0.90 m/s.
+    EXPECT_LT(velocity_of(*here, 0).x(), 0.5);
   }
 }
 

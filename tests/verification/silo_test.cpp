@@ -1,7 +1,9 @@
 // Janssen's silo (Zeitschrift des Vereines Deutscher Ingenieure 39 (1895) 1045): walls with friction carry
 // part of a column of rock. With the pressure p at depth z, dp/dz = rho g - p / lambda, the floor carries of
-// the weight M of a column of height H the share (1 - exp(-x)) / x, x = H / lambda: how much is one number
+// the weight M of a column of height H the share (1 - exp(-x)) / x, x = H / lambda: lambda is one length
 // for columns of all heights.
+#include <algorithm>
+
 #include "tests/verification/meshes.h"
 
 namespace scree::verification {
