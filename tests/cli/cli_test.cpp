@@ -38,7 +38,9 @@ TEST_F(Cli, PrintedValuesAreReadBeforeAnythingIsSimulated) {
   const fs::path assets = folder / "assets";
   fs::copy(fs::path(SCREE_SOURCE_DIR) / "assets", assets, fs::copy_options::recursive);
   fs::create_directory_symlink(fs::path(SCREE_SOURCE_DIR) / "scenarios", folder / "scenarios");
-  std::ofstream(assets / "reference" / "results.csv") << "case,value\n";
+  const std::string table = slurp(assets / "reference" / "results.csv");  // of another version: a column less
+  std::ofstream(assets / "reference" / "results.csv")
+      << table.substr(0, table.find(",repeats")) << table.substr(table.find('\n'));
   setenv("SCREE_ASSETS", assets.c_str(), 1);
   const fs::path out = folder / "run", store = folder / "store.sqlite";
   std::ofstream(folder / "sweep.yaml") << "scenario: " SCREE_SOURCE_DIR
