@@ -5,5 +5,6 @@
 
 #include "analysis/results/results.h"
 
-/// assets/reference/results.csv; none, with a message, if it cannot be read. Asked for before anything is simulated.
+/// assets/reference/results.csv; none, with a message, if it cannot be read. Asked for before anything is
+/// simulated.
 std::optional<std::vector<scree::ReferenceValue>> printed_values();

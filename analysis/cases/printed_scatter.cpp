@@ -30,9 +30,11 @@ PrintedMean printed_mean(const std::vector<Comparison>& compared, const PileValu
       printed.std = r.std;
     }
     if (r.quantity != value.quantity + "_scatter" || meaning == Meaning::at_least) continue;
-    if (scatter && !at_most) continue;
-    scatter = r.upper.value_or(r.value);
-    at_most = meaning != Meaning::value;
+    const double here = r.upper.value_or(r.value);
+    const bool bound = meaning != Meaning::value;
+    if (scatter && bound && (!at_most || here >= *scatter)) continue;
+    scatter = here;
+    at_most = bound;
   }
   if (!printed.std) {
     printed.std = scatter;
@@ -46,7 +48,7 @@ PrintedHalf half_of_difference(const PrintedMean& a, const PrintedMean& b, bool 
   if (!a.scatters() && !b.scatters()) return {};
   double scale = 1, ratio = 1;
   if (relative) {
-    const double sign = std::copysign(1.0, b.mean.value_or(a.mean.value_or(our_b)));
+    const double sign = std::copysign(1.0, b.mean.value_or(std::isnan(our_b) ? a.mean.value_or(1) : our_b));
     ratio = 1 + sign * difference;
     scale = std::abs(b.mean ? *b.mean : a.mean && ratio != 0 ? *a.mean / ratio : our_b);
     if (!(scale > 0)) return {};
@@ -66,29 +68,34 @@ PrintedHalf half_of_difference(const PrintedMean& a, const PrintedMean& b, bool 
 }
 
 PrintedHalf half_of_slope(const std::vector<double>& x, const std::vector<PrintedMean>& printed) {
-  PrintedHalf result;
-  double others = 0, freedom = 0;
-  int known = 0;
   std::vector<double> places;
+  int known = 0;
   for (std::size_t k = 0; k < x.size(); ++k) {
     if (printed[k].mean) places.push_back(x[k]);
-    if (!printed[k].scatters()) continue;
-    others += variance(*printed[k].std, printed[k].repeats);
-    freedom += printed[k].repeats - 1;
-    result.at_most |= printed[k].at_most;
-    ++known;
+    known += printed[k].scatters();
   }
   if (known == 0) return {};
-  others /= known;
+  // What each variance counts: by its own mean, and by its part of those that are borrowed.
   const double middle = mean_std(places).mean;
-  double xx = 0, sum = 0;
+  double xx = 0, borrowed = 0;
+  std::vector<double> counts(x.size(), 0.0);
   for (std::size_t k = 0; k < x.size(); ++k) {
     if (!printed[k].mean) continue;
     const double arm2 = (x[k] - middle) * (x[k] - middle);
     xx += arm2;
-    sum += arm2 * (printed[k].scatters() ? variance(*printed[k].std, printed[k].repeats) : others);
+    (printed[k].scatters() ? counts[k] : borrowed) += arm2;
   }
-  if (xx > 0) result.half = t_95(freedom) * std::sqrt(sum) / xx;
+  PrintedHalf result;
+  double sum = 0, squares = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (!printed[k].scatters()) continue;
+    const double count = counts[k] + borrowed / known;
+    const double part = count * variance(*printed[k].std, printed[k].repeats);
+    sum += part;
+    squares += part * part / (printed[k].repeats - 1);
+    result.at_most |= count > 0 && printed[k].at_most;
+  }
+  if (xx > 0 && sum > 0) result.half = t_95(sum * sum / squares) * std::sqrt(sum) / xx;
   return result;
 }
 

@@ -30,9 +30,9 @@ struct PrintedHalf {
 /// the scale |b| if neither mean is printed.
 PrintedHalf half_of_difference(const PrintedMean& a, const PrintedMean& b, bool relative, double difference,
                                double our_b);
-/// That of the least squares slope of printed means over x, sum (x - mean x) y / sum (x - mean x)^2. Means
-/// without a printed scatter take the others', in squares; t has as many degrees of freedom as these have
-/// together. Those without a mean are there for their scatter.
+/// That of the least squares slope of printed means over x, sum (x - mean x) y / sum (x - mean x)^2, with the
+/// degrees of freedom of Welch and Satterthwaite. Means without a printed scatter take the mean of the
+/// others' variances; those without a mean are there for their scatter.
 PrintedHalf half_of_slope(const std::vector<double>& x, const std::vector<PrintedMean>& printed);
 
 }  // namespace scree

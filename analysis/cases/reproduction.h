@@ -52,7 +52,7 @@ enum class TrendVerdict {
   agrees,      ///< beyond the scatter of seeds, in the printed direction, and of the printed size
   other_size,  ///< beyond the scatter, in the printed direction, of another size
   opposite,    ///< beyond the scatter, in the other direction, and the printed size is excluded
-  undecided,   ///< ours and the printed difference can be the same, and either can be none
+  undecided,   ///< ours and the printed difference can be the same, and one of them can be none
   not_seen,    ///< seeds alone may differ so much, and the printed size is excluded
   within,      ///< of a bound: the whole interval lies within it
   beyond,      ///< of a bound: the whole interval lies beyond it

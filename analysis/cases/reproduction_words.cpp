@@ -129,7 +129,8 @@ ReproductionWords reproduction_in_words(const std::vector<CaseResult>& cases,
   for (const TrendComparison& each : trends) ++verdicts[each.verdict];
   if (!trends.empty())
     words.counts.push_back(fmt::format(
-        "of {} printed differences between cases {} agree in direction and, within both scatters, in size, {} in direction alone, {} "
+        "of {} printed differences between cases {} agree in direction and, within both scatters, in size, "
+        "{} in direction alone, {} "
         "bounds are kept; {} go the other way, {} are not seen and their printed size is excluded, {} "
         "broken; {} are not decided, {} not judged",
         trends.size(), verdicts[TrendVerdict::agrees], verdicts[TrendVerdict::other_size],

@@ -228,19 +228,21 @@ TEST(VelocityTrend, OverAllSeedsBesidePfc3ds) {
   EXPECT_TRUE(velocity_trends(cases).empty()) << "two velocities are no trend";
 }
 
-// Slope sum (x - 2) y / 14 over 0, 1, 5: deviations of means 0.2, 0.6 and, taken from the others in squares,
-// sqrt(0.2), weighted 2, 1, 3; 4 + 3 degrees of freedom, t 2.365. A scatter without a mean counts among the
-// others.
+// Slope sum (x - 2) y / 14 over 0, 1, 5: variances of means 0.04 (4 degrees of freedom), 0.36 (3) and, taken
+// from these, their mean; weighted 4, 1, 9, so that the first two count 4 + 9/2 and 1 + 9/2. A scatter
+// without a mean is one of those that are taken, of three: 4 + 3, 1 + 3 and 3.
 TEST(VelocityTrend, PrintedSlopeScattersLikeItsMeans) {
   std::vector<PrintedMean> printed{
       {1.0, 0.2 * std::sqrt(5), false, 5}, {2.0, 0.6 * std::sqrt(4), false, 4}, {3.0, {}, false, 5}};
-  EXPECT_NEAR(half_of_slope({0, 1, 5}, printed).half, 2.365 * std::sqrt(4 * 0.04 + 1 * 0.36 + 9 * 0.2) / 14,
-              1e-3);
-  printed.push_back(
-      {{}, 0.4 * std::sqrt(6), true, 6});  // 5 more degrees: t 2.179; others (0.04 + 0.36 + 0.16) / 3
+  // Parts 0.34 and 1.98: freedom 2.32^2 / (0.34^2 / 4 + 1.98^2 / 3) = 4.028, t 2.770.
+  EXPECT_NEAR(half_of_slope({0, 1, 5}, printed).half, 2.770 * std::sqrt(2.32) / 14, 1e-3);
+  printed.push_back({{}, 0.4 * std::sqrt(6), true, 6});
+  // Parts 0.28, 1.44, 0.48: freedom 2.2^2 / (0.28^2 / 4 + 1.44^2 / 3 + 0.48^2 / 5) = 6.400, t 2.411.
   const PrintedHalf more = half_of_slope({0, 1, 5, 9}, printed);
-  EXPECT_NEAR(more.half, 2.179 * std::sqrt(4 * 0.04 + 1 * 0.36 + 9 * 0.56 / 3) / 14, 1e-3);
+  EXPECT_NEAR(more.half, 2.411 * std::sqrt(2.2) / 14, 1e-3);
   EXPECT_TRUE(more.at_most);
+  printed[2].std = 0.1 * std::sqrt(5);  // nothing is borrowed any more
+  EXPECT_FALSE(half_of_slope({0, 1, 5, 9}, printed).at_most);
   EXPECT_EQ(half_of_slope({0, 1}, {{1.0, {}, false, 5}, {2.0, {}, false, 5}}).half, 0);
 }
 
@@ -258,8 +260,8 @@ TEST(Reproduction, ReportHasItsTablesAndFigures) {
   std::ifstream in(folder / "report.html");
   std::ostringstream page;
   page << in.rdbuf();
-  for (const char* text : {"same direction, size within both scatters", "2 of 2" /* seeds with both signs */, "p of χ &lt; 0",
-                           "x/L where χ changes sign", "figure 6.7 of the thesis"})
+  for (const char* text : {"same direction, size within both scatters", "2 of 2" /* seeds with both signs */,
+                           "p of χ &lt; 0", "x/L where χ changes sign", "figure 6.7 of the thesis"})
     EXPECT_NE(page.str().find(text), std::string::npos) << text;
   EXPECT_TRUE(fs::exists(folder / "pictures" / "payload_chi.svg"));
   EXPECT_FALSE(fs::exists(folder / "pictures" / "lab_chi.svg")) << "no such runs";
