@@ -48,14 +48,20 @@ std::unique_ptr<scree::ResultsStore> open_store(const fs::path& named, StoreUse 
 }
 
 scree::EnsembleProgress run_with_progress(const std::vector<scree::RunRequest>& runs,
-                                          scree::ResultsStore& store, const EnsembleOptions& options) {
+                                          scree::ResultsStore& store, const EnsembleOptions& options,
+                                          const std::string& what) {
   scree::LocalProcesses processes(cores_or(options.jobs), options.checkpoint_minutes);
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const auto start = std::chrono::steady_clock::now();
   double shown = -1e9;
   bool line_open = false;
+  bool said = what.empty();
   std::size_t anew = 0;
   const auto report = [&](const scree::EnsembleProgress& p) {
+    if (!said && p.here + p.others + p.ended_here > 0) {
+      fmt::print(stderr, "{}\n", what);
+      said = true;
+    }
     const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (p.begun_anew > anew) {
       fmt::print(stderr, "{}{} run(s) began anew, their checkpoints were refused: {}\n",
@@ -85,9 +91,10 @@ scree::EnsembleProgress run_with_progress(const std::vector<scree::RunRequest>& 
 
 std::optional<std::vector<scree::StoredResult>> ended_runs(const std::vector<scree::RunRequest>& runs,
                                                            scree::ResultsStore& store,
-                                                           EnsembleOptions options) {
+                                                           EnsembleOptions options, std::string what) {
   while (true) {
-    run_with_progress(runs, store, options);
+    run_with_progress(runs, store, options, what);
+    what.clear();
     if (interrupted) return std::nullopt;
     std::vector<scree::StoredResult> results;
     for (const scree::RunRequest& run : runs)

@@ -19,14 +19,16 @@ std::filesystem::path store_file(const std::filesystem::path& named);
 /// The store named, or runs/store.sqlite; none, with a message, if it cannot be opened.
 std::unique_ptr<scree::ResultsStore> open_store(const std::filesystem::path& named, StoreUse use);
 
-/// Brings the runs into the store, with progress on stderr. Ctrl-C ends it.
+/// Brings the runs into the store, with progress on stderr; where there is something to do, `what` it is for
+/// stands above it. Ctrl-C ends it.
 scree::EnsembleProgress run_with_progress(const std::vector<scree::RunRequest>& runs,
-                                          scree::ResultsStore& store, const EnsembleOptions& options);
+                                          scree::ResultsStore& store, const EnsembleOptions& options,
+                                          const std::string& what = {});
 
 /// The same, and what came of each: done or failed. Nothing if Ctrl-C ended it.
 std::optional<std::vector<scree::StoredResult>> ended_runs(const std::vector<scree::RunRequest>& runs,
                                                            scree::ResultsStore& store,
-                                                           EnsembleOptions options);
+                                                           EnsembleOptions options, std::string what = {});
 
 /// A decimal number and nothing else.
 std::optional<double> number_of(const std::string& text);

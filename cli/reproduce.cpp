@@ -11,7 +11,6 @@
 #include "cli/option_values.h"
 #include "cli/output_folder.h"
 #include "cli/printed_values.h"
-#include "sim/material/input_bytes.h"
 
 namespace fs = std::filesystem;
 
@@ -65,16 +64,6 @@ std::vector<scree::CaseResult> results_of(const std::vector<scree::PointResults>
   return cases;
 }
 
-// None, with a message, if the table cannot be read.
-std::optional<std::vector<scree::Trend>> read_printed_trends() {
-  try {
-    return scree::read_trends(asset_dir() / "reference" / "trends.csv");
-  } catch (const std::runtime_error& error) {
-    fmt::print(stderr, "scree: {}\n", scree::one_line(error.what()));
-    return std::nullopt;
-  }
-}
-
 }  // namespace
 
 int run_reproduce(const ReproduceOptions& options) {
@@ -88,8 +77,8 @@ int run_reproduce(const ReproduceOptions& options) {
     return kBadInput;
 
   const auto reference = printed_values();
-  const auto printed_trends = read_printed_trends();
-  if (!reference || !printed_trends) return kBadInput;
+  const auto differences = printed_trends();
+  if (!reference || !differences) return kBadInput;
   std::vector<scree::PointResults> points;
   scree::EnsembleProgress progress;
   if (!options.from.empty()) {
@@ -108,7 +97,7 @@ int run_reproduce(const ReproduceOptions& options) {
   }
 
   const auto cases = results_of(points, *reference);
-  const auto trends = scree::compare_trends(cases, *printed_trends);
+  const auto trends = scree::compare_trends(cases, *differences);
   if (!options.csv.empty()) {
     scree::write_sweep_csv(sweep, points, options.csv);
     fmt::print("table: {}\n", options.csv.string());

@@ -8,9 +8,28 @@
 namespace scree {
 namespace {
 
-// Of the mean of the repeats.
-double variance(double std, int repeats) {
-  return std * std / repeats;
+// Of a sum of means, each times the root of its entry of `squares` (0: the mean is not in it). A mean without
+// a scatter takes the mean of the others' variances. Degrees of freedom by Welch and Satterthwaite.
+PrintedHalf half_of_sum(const std::vector<double>& squares, const std::vector<PrintedMean>& printed) {
+  double borrowed = 0;
+  int known = 0;
+  for (std::size_t k = 0; k < printed.size(); ++k)
+    if (printed[k].scatters())
+      ++known;
+    else
+      borrowed += squares[k];
+  PrintedHalf result;
+  double variance = 0, parts2 = 0;
+  for (std::size_t k = 0; k < printed.size(); ++k) {
+    const PrintedMean& each = printed[k];
+    if (!each.scatters()) continue;
+    const double part = (squares[k] + borrowed / known) * *each.std * *each.std / each.repeats;
+    variance += part;
+    parts2 += part * part / (each.repeats - 1);
+    result.at_most |= part > 0 && each.at_most;
+  }
+  if (variance > 0) result.half = t_95(variance * variance / parts2) * std::sqrt(variance);
+  return result;
 }
 
 }  // namespace
@@ -45,58 +64,26 @@ PrintedMean printed_mean(const std::vector<Comparison>& compared, const PileValu
 
 PrintedHalf half_of_difference(const PrintedMean& a, const PrintedMean& b, bool relative, double difference,
                                double our_b) {
-  if (!a.scatters() && !b.scatters()) return {};
-  double scale = 1, ratio = 1;
-  if (relative) {
-    const double sign = std::copysign(1.0, b.mean.value_or(std::isnan(our_b) ? a.mean.value_or(1) : our_b));
-    ratio = 1 + sign * difference;
-    scale = std::abs(b.mean ? *b.mean : a.mean && ratio != 0 ? *a.mean / ratio : our_b);
-    if (!(scale > 0)) return {};
-  }
-  const bool at_most = (a.scatters() && a.at_most) || (b.scatters() && b.at_most);
-  if (a.scatters() && b.scatters()) {
-    const Welch test = welch({0, *a.std, a.repeats}, {0, std::abs(ratio) * *b.std, b.repeats});
-    return {test.t_95 * test.error / scale, at_most};
-  }
-  const PrintedMean& known = a.scatters() ? a : b;
-  const auto repeats = [&](const PrintedMean& each) {
-    return each.repeats > 1 ? each.repeats : known.repeats;
-  };
-  const double error =
-      std::sqrt(variance(*known.std, repeats(a)) + ratio * ratio * variance(*known.std, repeats(b)));
-  return {t_95(known.repeats - 1) * error / scale, at_most};
+  if (!relative) return half_of_sum({1, 1}, {a, b});
+  const double sign = std::copysign(1.0, b.mean.value_or(std::isnan(our_b) ? a.mean.value_or(1) : our_b));
+  const double ratio = 1 + sign * difference;
+  const double scale = b.mean ? *b.mean : a.mean && ratio != 0 ? *a.mean / ratio : our_b;
+  if (!(std::abs(scale) > 0)) return {};
+  return half_of_sum({1 / (scale * scale), ratio * ratio / (scale * scale)}, {a, b});
 }
 
 PrintedHalf half_of_slope(const std::vector<double>& x, const std::vector<PrintedMean>& printed) {
   std::vector<double> places;
-  int known = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) {
+  for (std::size_t k = 0; k < x.size(); ++k)
     if (printed[k].mean) places.push_back(x[k]);
-    known += printed[k].scatters();
-  }
-  if (known == 0) return {};
-  // What each variance counts: by its own mean, and by its part of those that are borrowed.
   const double middle = mean_std(places).mean;
-  double xx = 0, borrowed = 0;
-  std::vector<double> counts(x.size(), 0.0);
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    if (!printed[k].mean) continue;
-    const double arm2 = (x[k] - middle) * (x[k] - middle);
-    xx += arm2;
-    (printed[k].scatters() ? counts[k] : borrowed) += arm2;
-  }
-  PrintedHalf result;
-  double sum = 0, squares = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    if (!printed[k].scatters()) continue;
-    const double count = counts[k] + borrowed / known;
-    const double part = count * variance(*printed[k].std, printed[k].repeats);
-    sum += part;
-    squares += part * part / (printed[k].repeats - 1);
-    result.at_most |= count > 0 && printed[k].at_most;
-  }
-  if (xx > 0 && sum > 0) result.half = t_95(sum * sum / squares) * std::sqrt(sum) / xx;
-  return result;
+  double xx = 0;
+  for (const double place : places) xx += (place - middle) * (place - middle);
+  if (!(xx > 0)) return {};
+  std::vector<double> squares(x.size(), 0.0);
+  for (std::size_t k = 0; k < x.size(); ++k)
+    if (printed[k].mean) squares[k] = std::pow((x[k] - middle) / xx, 2);
+  return half_of_sum(squares, printed);
 }
 
 }  // namespace scree

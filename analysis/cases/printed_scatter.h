@@ -24,15 +24,15 @@ struct PrintedHalf {
   double half = 0;  ///< 0: no scatter is printed
   bool at_most = false;
 };
-/// That of a difference a - b, or of (a - b) / |b|, which is `difference`: Student's t with the degrees of
-/// freedom of Welch and Satterthwaite; of a ratio var(a / b) = va / b^2 + a^2 vb / b^4. One that has no
-/// printed scatter takes the other's, which then has its n - 1 degrees of freedom alone. `our_b` stands for
-/// the scale |b| if neither mean is printed.
+// Student's t with the degrees of freedom of Welch and Satterthwaite; a mean without a printed scatter takes
+// the mean of the others' variances.
+
+/// That of a difference a - b, or of (a - b) / |b|, which is `difference`: var(a / b) = va / b^2 + a^2 vb /
+/// b^4. `our_b` stands for the scale |b| if neither mean is printed.
 PrintedHalf half_of_difference(const PrintedMean& a, const PrintedMean& b, bool relative, double difference,
                                double our_b);
-/// That of the least squares slope of printed means over x, sum (x - mean x) y / sum (x - mean x)^2, with the
-/// degrees of freedom of Welch and Satterthwaite. Means without a printed scatter take the mean of the
-/// others' variances; those without a mean are there for their scatter.
+/// That of the least squares slope of printed means over x, sum (x - mean x) y / sum (x - mean x)^2. Those
+/// without a mean are there for their scatter.
 PrintedHalf half_of_slope(const std::vector<double>& x, const std::vector<PrintedMean>& printed);
 
 }  // namespace scree

@@ -118,16 +118,13 @@ std::string velocity_table(const std::vector<CaseResult>& cases) {
         std::isfinite(each.printed_slope) ? printed_interval(each.printed_slope_half, false) + "," : "",
         each.printed.size(), look(each.verdict).style, look(each.verdict).words);
   if (rows.empty()) return rows;
-  return "<h2>Velocity of the blade</h2>\n<p>Least squares over all seeds of all cases of push dumping, with "
-         "the 95 % interval of the slope "
-         "and p of no slope (t, n − 2 degrees of freedom); p of no order by the test of Jonckheere and "
-         "Terpstra (normal approximation with "
-         "ties). Both are two-sided. PFC3D's slope is that of its printed means; ± is half of its 95 % "
-         "interval, by the printed scatter of its "
-         "repeats; a case without one takes the mean of the others'.</p>\n<div "
-         "class=\"wide\"><table><thead><tr><th "
-         "class=\"word\">Quantity</th><th class=\"word\">Section</th><th>Runs</th><th>Slope per "
-         "m/s</th><th>p of the slope</th><th>p of the "
+  return "<h2>Velocity of the blade</h2>\n<p>Least squares over all seeds of all cases of push dumping, "
+         "with the 95 % interval of the slope and p of no slope (t, n − 2 degrees of freedom); p of no "
+         "order by the test of Jonckheere and Terpstra (normal approximation with ties). Both are "
+         "two-sided. PFC3D's slope is that of its printed means; ± is half of its 95 % interval, by the "
+         "printed scatter of its repeats; a case without one takes the mean of the others'.</p>\n<div "
+         "class=\"wide\"><table><thead><tr><th class=\"word\">Quantity</th><th "
+         "class=\"word\">Section</th><th>Runs</th><th>Slope per m/s</th><th>p of the slope</th><th>p of the "
          "order</th><th>PFC3D's slope</th><th class=\"word\">Verdict</th></tr></thead><tbody>\n" +
          rows + "</tbody></table></div>\n";
 }
@@ -136,16 +133,13 @@ std::string trends_table(const std::vector<TrendComparison>& trends) {
   if (trends.empty()) return "";
   std::string out =
       "<h2>Differences between cases</h2>\n<p>p is the probability that seeds alone differ so much (Welch's "
-      "t test); below 0.05 a difference "
-      "is taken to be beyond their scatter, which one in twenty is by chance. Percentages are over the "
-      "magnitude of the second case's value. ± "
-      "is half of the 95 % interval of a printed difference, by the printed scatter of PFC3D's repeats; a "
-      "case without one takes the other's, "
-      "and where only a bound of it is printed that stands for it. A printed size is excluded when the two "
-      "differ by more than the root of the "
-      "sum of the squares of both halves. Bounds (≤) are taken as exact.</p>\n<div "
-      "class=\"wide\"><table><thead><tr><th "
-      "class=\"word\">Case</th><th class=\"word\">against</th><th class=\"word\">Quantity</th><th "
+      "t test); below 0.05 a difference is taken to be beyond their scatter, which one in twenty is by "
+      "chance. Percentages are over the magnitude of the second case's value. ± is half of the 95 % "
+      "interval of a printed difference, by the printed scatter of PFC3D's repeats; a case without one "
+      "takes the other's, and where only a bound of it is printed that stands for it. A printed size is "
+      "excluded when the two differ by more than the root of the sum of the squares of both halves. Bounds "
+      "(≤) are taken as exact.</p>\n<div class=\"wide\"><table><thead><tr><th class=\"word\">Case</th><th "
+      "class=\"word\">against</th><th class=\"word\">Quantity</th><th "
       "class=\"word\">Section</th><th>Printed</th><th>Here</th><th>p</th><th class=\"word\">Verdict</th><th "
       "class=\"word\">Source</th></tr></thead><tbody>\n";
   for (const TrendComparison& row : trends) {

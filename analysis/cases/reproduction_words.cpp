@@ -130,9 +130,8 @@ ReproductionWords reproduction_in_words(const std::vector<CaseResult>& cases,
   if (!trends.empty())
     words.counts.push_back(fmt::format(
         "of {} printed differences between cases {} agree in direction and, within both scatters, in size, "
-        "{} in direction alone, {} "
-        "bounds are kept; {} go the other way, {} are not seen and their printed size is excluded, {} "
-        "broken; {} are not decided, {} not judged",
+        "{} in direction alone, {} bounds are kept; {} go the other way, {} are not seen and their printed "
+        "size is excluded, {} broken; {} are not decided, {} not judged",
         trends.size(), verdicts[TrendVerdict::agrees], verdicts[TrendVerdict::other_size],
         verdicts[TrendVerdict::within], verdicts[TrendVerdict::opposite], verdicts[TrendVerdict::not_seen],
         counted_text(static_cast<std::size_t>(verdicts[TrendVerdict::beyond]), "bound") +

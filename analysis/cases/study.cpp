@@ -90,22 +90,19 @@ std::vector<StudyRank> rank_options(const std::vector<StudyOption>& options,
 }
 
 std::string study_answer(const std::vector<StudyOption>& options, const StudyCriterion& criterion) {
-  std::vector<std::string> first, unranked;
-  const StudyRank* best = nullptr;
-  const StudyRank* next = nullptr;
   const std::vector<StudyRank> ranks = rank_options(options, criterion);
+  std::vector<std::string> first, unranked;
+  const StudyRank* next = nullptr;
   for (const StudyRank& rank : ranks) {
-    if (!rank.rank) {
-      unranked.push_back(fmt::format("{} ({:.3g})", options[rank.option].name, rank.value.mean));
-      continue;
-    }
-    if (best == nullptr) best = &rank;
-    if (*rank.rank == 1)
-      first.push_back(options[rank.option].name);
+    const std::string& name = options[rank.option].name;
+    if (!rank.rank)
+      unranked.push_back(fmt::format("{} ({:.3g})", name, rank.value.mean));
+    else if (*rank.rank == 1)
+      first.push_back(name);
     else if (next == nullptr)
       next = &rank;
   }
-  if (best == nullptr)
+  if (first.empty())
     return fmt::format("No option is ranked by {} yet: it takes two runs of each.", criterion.words);
   const auto value = [&](const StudyRank& rank) {
     return fmt::format("{:.3g} ± {:.2g}", rank.value.mean, rank.value.std);
@@ -115,16 +112,15 @@ std::string study_answer(const std::vector<StudyOption>& options, const StudyCri
       (unranked.empty() ? "" : fmt::format("; not ranked, with one run: {}", fmt::join(unranked, ", ")));
   if (first.size() == 1 && next == nullptr)
     return fmt::format("Of {} alone {} is known with its scatter: {}{}.", first.front(), criterion.words,
-                       value(*best), behind);
+                       value(ranks.front()), behind);
   if (first.size() == 1)
-    return fmt::format("{} is best by {}: {}{}.", first.front(), criterion.words, value(*best), behind);
+    return fmt::format("{} is best by {}: {}{}.", first.front(), criterion.words, value(ranks.front()),
+                       behind);
   return fmt::format(
       "These runs do not tell {} and {} apart by {}: their differences to the smallest mean, {} of {}, are "
-      "within "
-      "the "
-      "scatter of seeds{}.",
-      fmt::join(first.begin(), first.end() - 1, ", "), first.back(), criterion.words, value(*best),
-      options[best->option].name, behind);
+      "within the scatter of seeds{}.",
+      fmt::join(first.begin(), first.end() - 1, ", "), first.back(), criterion.words, value(ranks.front()),
+      first.front(), behind);
 }
 
 std::vector<std::string> study_in_words(const std::vector<StudyOption>& options,
